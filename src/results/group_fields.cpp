@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "clog/core/scene/scene.hpp"
+#include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/lattice.hpp"
 #include "clog/results/groups.hpp"
@@ -37,6 +39,24 @@ void append_causes(const Group& group, std::vector<Field>& fields) {
 }
 
 }  // namespace
+
+double terminal_speed_in_laboratory(const Group& group) {
+  const LaboratoryScale scale = group.laboratory.value_or(LaboratoryScale());
+  if (!std::isfinite(scale.speed)) return scale.speed;
+  return group.first_row.parameters.drag.terminal_speed * scale.length / scale.time;
+}
+
+double failures_per_length(const Group& group) {
+  const double way = group.clogging.total_distance;
+  return way > 0 ? group.num_failed_counted / way : sweep::RunRow::not_known;
+}
+
+fit::Migration share_along_rows(const Group& group) {
+  const double slope = portable::tan(group.row_angle * std::numbers::pi / 180);
+  if (slope == 0) return {.slope = sweep::RunRow::not_known, .standard_error = sweep::RunRow::not_known};
+  return {.slope = group.migration.slope / slope,
+          .standard_error = group.migration.standard_error / std::abs(slope)};
+}
 
 std::span<const sweep::Column* const> group_columns() {
   static const std::vector<const sweep::Column*> all = [] {

@@ -3,14 +3,10 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <iterator>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -19,27 +15,24 @@
 #include "clog/console/printable.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/model/model.hpp"
 #include "clog/core/tools/wording.hpp"
 #include "clog/core/world/lattice.hpp"
 #include "clog/results/cost.hpp"
-#include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/columns.hpp"
-#include "clog/sweep/obstacle_arrays.hpp"
-#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "run_sample.hpp"
 #include "value_json.hpp"
 
 namespace clog::results {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
+constexpr double hour = 3600;
 
-/// One part of the preview, as text and as numbers.
-struct Part {
+/// The preview, as text and as numbers.
+struct Preview {
   std::string text;
   Json json;
 
@@ -50,13 +43,13 @@ struct Part {
   }
 };
 
-void print(Part part, PreviewFormat format) {
+void print(Preview& part, PreviewFormat format) {
   part.json["text"] = part.text;
   std::cout << (format == PreviewFormat::json ? console::json_text(part.json, -1) : part.text);
 }
 
-/// Prints the text of a part that a signal or a failure ended early.
-void print_incomplete(const Part& part, PreviewFormat format) {
+/// Prints the text of a preview that a signal or a failure ended early.
+void print_incomplete(const Preview& part, PreviewFormat format) {
   if (format == PreviewFormat::text) std::cout << part.text;
 }
 
@@ -80,7 +73,7 @@ std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
   return varying;
 }
 
-void add_task(Part& part, const sweep::Plan& plan, std::int64_t task,
+void add_task(Preview& part, const sweep::Plan& plan, std::int64_t task,
               const std::vector<const sweep::Column*>& columns) {
   const sweep::RunRow row = sweep::describe(plan.task(task));
   std::string line = std::to_string(task);
@@ -93,151 +86,6 @@ void add_task(Part& part, const sweep::Plan& plan, std::int64_t task,
   }
   part.line("{}", line);
   part.json["tasks"].push_back(std::move(json));
-}
-
-double work_per_step(const RunParameters& run) { return model_of(run).num_points(run); }
-double longest_work(const RunParameters& run) { return run.max_time / *run.time_step * work_per_step(run); }
-
-/// Sample of a sweep's runs from which its cost is estimated.
-struct Sample {
-  std::vector<RunCost> costs;
-  std::string source;
-  std::string failure;  ///< why the first run that could not begin failed; `costs` does not contain such runs
-  std::int64_t num_clogged = 0;
-  std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
-  double spacing = 0;          ///< obstacle spacing of such a run [sigma]
-  bool has_own_circles = false;
-
-  void count(const sweep::RunRow& row) {
-    if (row.status != RunStatus::clogged) return;
-    ++num_clogged;
-    if (!(row.distance < sweep::obstacle_spacing(row))) return;
-    ++num_short;
-    spacing = sweep::obstacle_spacing(row);
-    has_own_circles |= row.parameters.obstacles.layout == ObstacleLayout::file;
-  }
-};
-
-/// Cost of a run up to `row`. @param first  row of the same run when it had just started
-RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
-                std::int64_t parameter_set) {
-  return {.parameter_set = parameter_set,
-          .begin_seconds = sweep::cost_seconds(first),
-          .seconds = sweep::cost_seconds(row) - sweep::cost_seconds(first),
-          .work = static_cast<double>(row.steps - first.steps) * work_per_step(run),
-          .longest_work = longest_work(run),
-          .is_over = !sweep::is_unfinished(row.status)};
-}
-
-constexpr std::size_t fewest_stored_runs = 5;
-constexpr double hour = 3600;
-
-/// The sample of runs in the sweep's own file; empty without a file.
-struct Stored {
-  Sample sample;
-  std::vector<WaitingRuns> waiting;  ///< runs of each parameter set that are not in the sample
-  std::int64_t num_done = 0;         ///< tasks that need not run again
-  double seconds = 0;                ///< time that the tasks have taken so far
-
-  bool knows_enough() const { return sample.costs.size() >= fewest_stored_runs; }
-};
-Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
-  Stored stored;
-  stored.sample.source = "in " + path;
-  if (path.empty() || !std::filesystem::exists(path)) return stored;
-  std::unordered_multimap<std::string, sweep::RunRow> rows;
-  for (const sweep::RunRow& row : read_with_caution(path).rows)
-    if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity_in_any_laboratory(row), row);
-  for (std::int64_t set = 0; set < plan.num_groups(); ++set)
-    stored.waiting.push_back(
-        {set, plan.has_twin(set) ? 0 : plan.num_seeds(set), longest_work(plan.group(set))});
-  for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
-    if (plan.twin(task)) continue;
-    const RunParameters run = plan.task(task);
-    const auto found = rows.extract(sweep::identity_in_any_laboratory(sweep::describe(run)));
-    if (found.empty()) continue;
-    const sweep::RunRow& row = found.mapped();
-    const std::int64_t set = plan.group_of(task);
-    const bool is_over = !sweep::is_unfinished(row.status);
-    const bool has_moved = row.steps > 0 && sweep::cost_seconds(row) > 0;
-    stored.num_done += is_over;
-    stored.seconds += sweep::cost_seconds(row);
-    if (has_moved) stored.sample.costs.push_back(cost_of(row, {}, run, set));
-    stored.sample.count(row);
-    if (is_over || has_moved) --stored.waiting[set].number;
-  }
-  return stored;
-}
-
-/// Tasks spread over parameter sets and, if there are few sets, over seeds; tasks of the same array are
-/// adjacent.
-std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
-  constexpr std::int64_t most_tasks = 24;
-  constexpr std::int64_t most_seeds = 4;  // with many parameter sets, because arrays may take long to build
-  const std::int64_t num_tasks = std::min(plan.size(), most_tasks);
-  const std::int64_t num_groups = plan.num_groups();
-  std::vector<std::int64_t> tasks;
-  for (std::int64_t i = 0; i < num_tasks; ++i) {
-    const std::int64_t group = i * num_groups / num_tasks;
-    tasks.push_back(
-        num_groups <= num_tasks ? i : plan.task_of(group, i % std::min(most_seeds, plan.num_seeds(group))));
-  }
-  std::stable_sort(tasks.begin(), tasks.end(), [&](std::int64_t a, std::int64_t b) {
-    const auto array = [&](std::int64_t task) {
-      const RunParameters run = plan.task(task);
-      return sweep::array_key(run);
-    };
-    return array(a) < array(b);
-  });
-  return tasks;
-}
-
-constexpr double seconds_to_try = 10;
-
-/// Runs short pieces of these tasks. The jobs may be computed by another process, which answers between
-/// slices of its work; a job that takes too long, such as a release that does not come to rest, is dropped.
-Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
-  constexpr double fewest_seconds =
-      0.1;                       // time for a run if its array has used up the run's share of the time [s]
-  constexpr double grace = 0.5;  // time to wait for the last answer [s]
-  const Clock::time_point begin = Clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  const auto advance_until = [&](sweep::Job& job, double end, const auto& is_enough) {
-    while (!job.advance())
-      if (is_enough() || elapsed() >= end || console::stop_signalled()) return;
-  };
-  Sample sample;
-  const std::vector<std::int64_t> tasks = tasks_to_try(plan);
-  for (std::size_t i = 0; i < tasks.size() && elapsed() < seconds_to_try && !console::stop_signalled(); ++i) {
-    const double share = (seconds_to_try - elapsed()) / static_cast<double>(tasks.size() - i);
-    const double end = elapsed() + share;
-    const auto job = jobs(tasks[i], {});
-    const auto answers = [&] { return job->refresh(); };
-    advance_until(*job, seconds_to_try + grace, answers);  // time of its array and its release
-    const sweep::RunRow first = job->row();
-    advance_until(*job, std::max(end, elapsed() + fewest_seconds), [] { return false; });
-    advance_until(*job, seconds_to_try + grace, answers);
-    const sweep::RunRow row = job->row();
-    const bool is_short = !sweep::is_unfinished(row.status) && !sweep::is_unfinished(first.status);
-    sample.count(row);
-    if (row.steps > 0)
-      sample.costs.push_back(
-          cost_of(row, is_short ? sweep::RunRow() : first, plan.task(tasks[i]), plan.group_of(tasks[i])));
-    else if (sample.failure.empty())
-      sample.failure = row.message;
-  }
-  if (sample.failure.empty())
-    sample.failure = fmt::format("its release takes longer than {:.2g} s", seconds_to_try);
-  sample.source = fmt::format("tried for {:.2g} s in total", elapsed());
-  return sample;
-}
-
-SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
-  double all_work = 0;
-  for (std::int64_t group = 0; group < plan.num_groups(); ++group)
-    if (!plan.has_twin(group))
-      all_work += longest_work(plan.group(group)) * static_cast<double>(plan.num_seeds(group));
-  return sweep_cost(sample.costs, all_work, plan.num_runs());
 }
 
 /// Adds seconds to a cost; negative seconds subtract.
@@ -260,7 +108,7 @@ Json hours_json(const SweepCost& cost) {
   return {{"expected", cost.expected / hour}, {"lower", cost.lower / hour}, {"upper", cost.upper / hour}};
 }
 
-void add_expected(Part& part, const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
+void add_expected(Preview& part, const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
   const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
   part.line(
       "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner",
@@ -278,7 +126,7 @@ void add_expected(Part& part, const sweep::Plan& plan, const Sample& sample, con
 }
 
 /// @param cost  of the whole plan
-void add_left(Part& part, const sweep::Plan& plan, const std::string& output, const Stored& stored,
+void add_left(Preview& part, const sweep::Plan& plan, const std::string& output, const Stored& stored,
               const SweepCost& cost) {
   const SweepCost left = plus(cost, -stored.seconds);
   part.line("# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})",
@@ -288,7 +136,7 @@ void add_left(Part& part, const sweep::Plan& plan, const std::string& output, co
 }
 
 /// Warns before the runs about clogging lengths below an obstacle spacing, which clogfit would doubt (`v`).
-void add_short_lengths(Part& part, const Sample& sample) {
+void add_short_lengths(Preview& part, const Sample& sample) {
   constexpr std::int64_t fewest = 3;
   constexpr std::int64_t one_in =
       4;  // with a clogging length of five spacings, one distance in six would be below one spacing
@@ -310,7 +158,7 @@ SweepCost times(SweepCost cost, double factor) {
 
 /// Limits of the cost of a sweep that adds seeds.
 /// @param cost  of the sweep's first round
-void add_rounds(Part& part, const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
+void add_rounds(Preview& part, const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
   const std::int64_t needed = rule.clogs_needed(), most = rule.most_seeds();
   part.line("# this is the first round: +-{} % needs {} per parameter set",
             sweep::shortest(100 * rule.precision()), count_text(needed, "clog"));
@@ -336,7 +184,7 @@ void add_rounds(Part& part, const SeedRule& rule, std::int64_t first_seeds, cons
       {"clogs_needed", needed}, {"if_all_clog", if_all_clog}, {"if_few_clog", if_few_clog}};
 }
 
-void add_lattices(Part& part, const sweep::Plan& plan) {
+void add_lattices(Preview& part, const sweep::Plan& plan) {
   constexpr std::size_t most_lines = 10;
   std::vector<std::string> lines;
   for (std::int64_t group = 0; group < plan.num_groups() && lines.size() <= most_lines; ++group) {
@@ -372,11 +220,11 @@ void print_tasks(const sweep::Plan& plan, PreviewFormat format) {
   constexpr std::int64_t lines_at_an_end = 20;
   const std::int64_t num_skipped = plan.size() > most_lines ? plan.size() - 2 * lines_at_an_end : 0;
   const std::vector<const sweep::Column*> columns = varying_columns(plan);
-  Part part{.text = "# task",
-            .json = {{"number_of_tasks", plan.size()},
-                     {"parameter_sets", plan.num_groups()},
-                     {"runs", plan.num_runs()},
-                     {"tasks", Json::array()}}};
+  Preview part{.text = "# task",
+               .json = {{"number_of_tasks", plan.size()},
+                        {"parameter_sets", plan.num_groups()},
+                        {"runs", plan.num_runs()},
+                        {"tasks", Json::array()}}};
   for (const sweep::Column* column : columns) part.text += ' ' + column->name;
   part.text += '\n';
   for (std::int64_t task = 0; task < plan.size(); ++task) {
@@ -394,7 +242,7 @@ void print_tasks(const sweep::Plan& plan, PreviewFormat format) {
               number == 1 ? "1 task is" : fmt::format("{} tasks are", number), number == 1 ? "run" : "runs",
               number == 1 ? "is computed" : "are computed");
   add_lattices(part, plan);
-  print(std::move(part), format);
+  print(part, format);
 }
 
 void print_refusal(const Refusal& refusal) {
@@ -406,7 +254,7 @@ void print_refusal(const Refusal& refusal) {
 
 int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
                const sweep::JobFactory& jobs, PreviewFormat format) {
-  Part part;
+  Preview part{.text = "", .json = {}};
   for (const std::string& words : sweep::limits_of_results(plan))
     part.line("# {}", console::printable(words));
   const Stored stored = stored_runs(plan, output);
@@ -432,7 +280,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
     if (!is_done && stored.seconds > 0) add_left(part, plan, output, stored, cost);
     if (rule) add_rounds(part, *rule, plan.size() / plan.num_groups(), with_expected(of_trials, cost));
   }
-  print(std::move(part), format);
+  print(part, format);
   return console::exit_success;
 }
 

@@ -59,6 +59,8 @@ DistanceTable distances_of(const Side& side, const ScalesByLaboratory& scales,
 /// What may spoil the length of each group. Of measured distances only few_clogs, not_exponential and
 /// equal_distances are known.
 std::vector<Flaws> flaws_of(const DistanceTable& table);
+/// The name of a label as a column of a sweep.
+std::string column_name(std::string label);
 /// Labels of a table that the other table lacks.
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other);
 
