@@ -54,6 +54,23 @@ void get(ByteReader& bytes, Member& member) {
   bytes.get(member.mechanism);
 }
 
+}  // namespace
+
+void save(const std::vector<Member>& members, ByteWriter& bytes) {
+  bytes.put(members.size());
+  for (const Member& member : members) put(bytes, member);
+}
+
+std::vector<Member> restore_members(ByteReader& bytes) {
+  std::size_t number = 0;
+  bytes.get(number);
+  std::vector<Member> members;
+  for (; number > 0; --number) get(bytes, members.emplace_back());
+  return members;
+}
+
+namespace {
+
 /// The frame in units that are larger by a factor, with the period of these units.
 LocalFrame scaled(const LocalFrame& frame, double factor, const Period& period) {
   LocalFrame scaled = frame;
@@ -74,11 +91,11 @@ RunParameters daughter_parameters(const RunParameters& ancestor, double diameter
   run.dp.perimeter_stiffness.reset();
   run.wall_stiffness.reset();
   run.time_step.reset();
-  for (double* length : {&*run.dp.contact_range, &run.dp.self_contact_range, &run.dp.yield_traction,
-                         &run.dp.break_up_neck, &run.obstacles.gap, &run.obstacles.diameter,
-                         &run.obstacles.pitch, &run.obstacles.box, &run.obstacles.length,
-                         &run.obstacles.entrance, &run.obstacles.entrance_from, &run.obstacles.entrance_to,
-                         &run.obstacles.exit, &run.drag.near_wall_cutoff})
+  for (double* length :
+       {&*run.dp.contact_range, &run.dp.self_contact_range, &run.dp.yield_traction, &run.dp.break_up_neck,
+        &run.obstacles.gap, &run.obstacles.diameter, &run.obstacles.pitch, &run.obstacles.box,
+        &run.obstacles.length, &run.obstacles.entrance, &run.obstacles.entrance_from,
+        &run.obstacles.entrance_to, &run.obstacles.exit, &run.drag.near_wall_cutoff})
     *length /= diameter;
   if (run.obstacles.density.per_area) *run.obstacles.density.per_area *= diameter * diameter;
   run.drag.terminal_speed *= std::pow(diameter, run.drag.speed_exponent - 0.5);
@@ -154,7 +171,7 @@ void FamilyRun::cut_present() {
     birth.member.path = present_.path + number++;
     birth.member.diameter = present_.diameter * std::sqrt(part_shape.area / shape.area);
     birth.member.birth = point_of(mother.displacement_of(area_centroid(part.position)), mother.time());
-    if (birth.member.diameter < run_.dp.smallest_daughter) {
+    if (birth.member.diameter < run_.dp.smallest_daughter || birth.member.path.size() == longest_path) {
       birth.member.end = birth.member.birth;
       birth.member.status = MemberEnd::small;
       births_.push_back(std::move(birth));
@@ -211,8 +228,7 @@ std::vector<std::byte> FamilyRun::snapshot() const {
   ByteWriter bytes;
   bytes.put(family_kind);
   bytes.put(ancestor_.state_at_break_up());
-  bytes.put(members_.size());
-  for (const Member& member : members_) put(bytes, member);
+  clog::save(members_, bytes);
   bytes.put(births_.size());
   for (const Birth& birth : births_) birth.save(bytes);
   present_birth_->save(bytes);
@@ -230,9 +246,8 @@ FamilyRun FamilyRun::resume(const RunParameters& run, std::shared_ptr<const Obst
     std::vector<std::byte> at_break_up;
     bytes.get(at_break_up);
     FamilyRun resumed(run, obstacles, DropletRun::broken(run, obstacles, at_break_up));
+    resumed.members_ = restore_members(bytes);
     std::size_t number = 0;
-    bytes.get(number);
-    for (; number > 0; --number) get(bytes, resumed.members_.emplace_back());
     bytes.get(number);
     for (; number > 0; --number) resumed.births_.emplace_back().restore(bytes);
     Birth& birth = resumed.present_birth_.emplace();

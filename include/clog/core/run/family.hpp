@@ -13,6 +13,7 @@
 #include "clog/core/droplet/hold.hpp"
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "clog/core/tools/byte_archive.hpp"
 #include "clog/core/tools/words.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
@@ -44,6 +45,14 @@ struct Member {
   MemberEnd status = MemberEnd::failed;
   std::optional<ClogMechanism> mechanism = ClogMechanism::none;
 };
+
+/// Longest path of a member. Each break-up takes at least 2 % of the area, so no family comes near; the parts
+/// of a droplet with such a path are not followed.
+inline constexpr std::size_t longest_path = 64;
+
+void save(const std::vector<Member>& members, ByteWriter& bytes);
+/// @throws std::out_of_range at the end of the bytes
+std::vector<Member> restore_members(ByteReader& bytes);
 
 /// Smallest number of vertices of a daughter.
 inline constexpr int fewest_vertices_of_a_daughter = 32;
