@@ -18,7 +18,7 @@ import tempfile
 import pandas
 from clogsweep.paper import figures, finished
 from clogsweep.paper.plate import CATALOGUE
-from clogsweep.paper.workshop import CONFIGS, config_keys
+from clogsweep.paper.runner import CONFIGS, config_keys
 from PIL import Image
 
 HERE = pathlib.Path(__file__).resolve().parent

@@ -22,6 +22,7 @@
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {
@@ -172,7 +173,7 @@ void CommandLine::refuse_misspelt_command(const std::string& word) const {
   const bool is_command = std::find(commands_.begin(), commands_.end(), word) != commands_.end();
   std::error_code none;  // a word may be too long for a file's name
   if (is_command || word.starts_with('-') || std::filesystem::exists(word, none)) return;
-  if (const std::string near = sweep::did_you_mean(excerpt(word), commands_); !near.empty())
+  if (const std::string near = did_you_mean(excerpt(word), commands_); !near.empty())
     throw Error(fmt::format("unknown command '{}'; did you mean {} {}?", word, program_, near));
   if (const std::string command = commands_.empty() ? "" : command_elsewhere(word); !command.empty())
     throw Error(fmt::format("unknown command '{}'; did you mean {}?", word, command));

@@ -21,6 +21,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {
@@ -190,7 +191,7 @@ void check_number_of_cells(const std::vector<std::string>& cells, const Columns&
     throw Error("needs x,y or x,y,diameter, separated by commas");
   if (!columns.header.empty() && cells.size() != columns.header.size())
     throw Error(fmt::format("has {}, but the line of names has {}; give each column a name, such as id",
-                            sweep::counted(std::ssize(cells), "cell"), columns.header.size()));
+                            count_text(std::ssize(cells), "cell"), columns.header.size()));
 }
 
 Obstacle parse_circle(console::TableLine line, const Columns& columns, const Scale& scale,

@@ -9,8 +9,8 @@
 #include "clog/console/csv.hpp"
 #include "clog/console/decimal_commas.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/sweep/settings.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {
 namespace {
@@ -39,7 +39,7 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
   const auto commas = std::ranges::count(cell, ',');
   // A comma in a list of seeds is never decimal: the list may end with 0.
-  const bool may_be_decimal = separator != ',' && commas == 1 && key.name != "seeds";
+  const bool may_be_decimal = separator != ',' && commas == 1 && !key.is_ensemble();
   const auto with_point = [&](const std::string& number) {
     return decimal_commas.with_point(key.name, number, separator);
   };
@@ -69,8 +69,8 @@ std::vector<std::string> values_of(const console::TableLine& line, const std::ve
   const std::vector<std::string> cells = console::without_surplus_cells(line.cells, num_columns);
   if (cells.size() != num_columns)
     throw Error(fmt::format("has {}, but the first line names {}",
-                            sweep::counted(static_cast<std::int64_t>(cells.size()), "cell"),
-                            sweep::counted(static_cast<std::int64_t>(num_columns), "key")));
+                            count_text(static_cast<std::int64_t>(cells.size()), "cell"),
+                            count_text(static_cast<std::int64_t>(num_columns), "key")));
   std::vector<std::string> values;
   values.reserve(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i)

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -18,15 +19,11 @@
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/scheduler/communicator.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::diagnostics {
 namespace {
-
-std::string counted(std::size_t number, const char* noun) {
-  return sweep::counted(static_cast<std::int64_t>(number), noun);
-}
 
 bool is_set(const char* name) { return std::getenv(name) != nullptr; }
 
@@ -93,8 +90,8 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
   }
   const double granted = ranks.front()->cores_granted;
   const std::string unbind = how_to_unbind(scheduler::Communicator::library_version());
-  const std::string where =
-      fmt::format("{}: {}, {}", host, counted(ranks.size(), "rank"), counted(all.size(), "core"));
+  const std::string where = fmt::format("{}: {}, {}", host, count_text(std::ssize(ranks), "rank"),
+                                        count_text(std::ssize(all), "core"));
   if (ranks.size() > all.size())
     return {where, fmt::format("one rank per core is as fast: mpirun -np {}; if there are more cores, ranks "
                                "are bound: {}",

@@ -15,6 +15,7 @@
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::laboratory {
@@ -43,7 +44,7 @@ const std::map<std::string, std::string>& known_keys() {
   std::vector<std::string> names;
   names.reserve(known_keys().size());
   for (const auto& [name, units] : known_keys()) names.push_back(name);
-  const std::string near = sweep::did_you_mean(key, names);
+  const std::string near = did_you_mean(key, names);
   throw Error(fmt::format("line {}: unknown key '{}'{} (known: {})", line, excerpt(key),
                           near.empty() ? "" : "; did you mean " + near + '?', joined(names)));
 }
@@ -171,7 +172,7 @@ std::vector<Entries> sets_of(const Entries& entries) {
     throw Error(
         fmt::format("has {} values of speed for {} (diameters times angles); give one for each, with "
                     "the angles of the first diameter first, or one for all",
-                    speeds.size(), sweep::counted(std::ssize(diameters) * std::ssize(angles), "set")));
+                    speeds.size(), count_text(std::ssize(diameters) * std::ssize(angles), "set")));
   if (speeds.size() > 1 && scales_speed(entries))
     throw Error(
         "has a speed for each set, so speed-diameter, -angle and -exponent have no meaning; leave "

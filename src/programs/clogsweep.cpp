@@ -112,13 +112,13 @@ std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::
 }
 
 /// Rank 0's state of a sweep.
-struct Led {
+struct MasterState {
   std::optional<results::GrowingSweep> growing;
   sweep::Plan plan;
   results::SweepState state;
 
   /// @param first  the plan of the command line, which may grow
-  Led(const cli::CommandLine& line, sweep::Plan first, int num_ranks)
+  MasterState(const cli::CommandLine& line, sweep::Plan first, int num_ranks)
       : growing(growing_sweep(line)),
         plan(growing ? sweep::Plan(growing->settings) : std::move(first)),
         state(line.get("output"), plan, settings(line), provenance(line, growing, num_ranks),
@@ -136,7 +136,7 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
                        char** argv) {
   // Rank 0 reads and checks; the others wait for its exit code, or its assignment.
   cli::CommandLine line("clogsweep", clogsweep_usage, cli::CommandLine::SweepKeys::accepted);
-  std::optional<Led> led;
+  std::optional<MasterState> master;
   std::string task;  // the text of an assignment, see scheduler::Assignment::text()
   int exit_code = go_on;
   if (ranks.rank() == 0) {
@@ -145,11 +145,11 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
       std::variant<int, sweep::Plan> prepared = prepare(line, isolated);
       if (const int* const over = std::get_if<int>(&prepared)) return *over;
       diagnostics::refuse_to_be_alone(ranks.size());
-      led.emplace(line, std::get<sweep::Plan>(std::move(prepared)), ranks.size());
-      task = assignment(line, led->settings(line)).text();
+      master.emplace(line, std::get<sweep::Plan>(std::move(prepared)), ranks.size());
+      task = assignment(line, master->settings(line)).text();
       return console::exit_success;
     });
-    if (led && exit_code == console::exit_success) exit_code = go_on;
+    if (master && exit_code == console::exit_success) exit_code = go_on;
   }
   exit_code = ranks.broadcast(exit_code);
   if (exit_code != go_on) return exit_code;
@@ -157,11 +157,11 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
 
   const auto assigned = scheduler::Assignment::from(task);
   use_instruction_set(assigned.instruction_set);
-  sweep::JobFactory make_job = led ? sweep::run_jobs(led->plan) : scheduler::assigned_jobs(task);
+  sweep::JobFactory make_job = master ? sweep::run_jobs(master->plan) : scheduler::assigned_jobs(task);
   if (assigned.is_isolated) make_job = isolated.jobs(task, std::move(make_job));
-  if (led)
-    return scheduler::drive_sweep(ranks, driver_options(line), led->plan, make_job, led->state,
-                                  led->growing ? &led->growing->rule : nullptr);
+  if (master)
+    return scheduler::drive_sweep(ranks, driver_options(line), master->plan, make_job, master->state,
+                                  master->growing ? &master->growing->rule : nullptr);
   scheduler::follow_sweep(ranks, make_job, assigned.report_interval);
   return console::exit_success;
 }

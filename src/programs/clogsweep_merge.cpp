@@ -9,10 +9,10 @@
 #include "clog/console/printable.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/store/run_table.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
 
@@ -31,18 +31,18 @@ other sweep.
 void print_merged(const std::string& output, const std::vector<std::string>& paths,
                   const results::MergedSweep& merged) {
   std::cout << console::printable(output) << ": "
-            << sweep::counted(static_cast<std::int64_t>(merged.table.rows.size()), "row") << " of "
-            << sweep::counted(static_cast<std::int64_t>(paths.size()), "file");
+            << count_text(static_cast<std::int64_t>(merged.table.rows.size()), "row") << " of "
+            << count_text(static_cast<std::int64_t>(paths.size()), "file");
   if (merged.num_shared > 0)
-    std::cout << ", " << sweep::counted(merged.num_shared, "run") << " in more than one of them";
+    std::cout << ", " << count_text(merged.num_shared, "run") << " in more than one of them";
   if (merged.num_differing > 0)
     std::cout
         << " (" << merged.num_differing
         << " with results that differ by instruction set: the results of the file named first were kept)";
   if (merged.num_faulty > 0)
-    std::cout << "; " << sweep::counted(merged.num_faulty, "row") << " left out as physically impossible";
+    std::cout << "; " << count_text(merged.num_faulty, "row") << " left out as physically impossible";
   if (!merged.snapshots.empty())
-    std::cout << ", " << sweep::counted(static_cast<std::int64_t>(merged.snapshots.size()), "snapshot");
+    std::cout << ", " << count_text(static_cast<std::int64_t>(merged.snapshots.size()), "snapshot");
   std::cout << '\n';
 }
 

@@ -4,9 +4,9 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/store/run_table.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
 
@@ -36,11 +36,11 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
   results::write(found.table, found.snapshots, output);
   const auto num_rows = static_cast<std::int64_t>(found.table.rows.size());
-  std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "undamaged row");
+  std::cout << console::printable(output) << ": " << count_text(num_rows, "undamaged row");
   if (found.num_from_journal > 0)
     std::cout << ", results of " << found.num_from_journal << " from the journal";
   if (!found.snapshots.empty())
-    std::cout << ", " << sweep::counted(static_cast<std::int64_t>(found.snapshots.size()), "snapshot");
+    std::cout << ", " << count_text(static_cast<std::int64_t>(found.snapshots.size()), "snapshot");
   std::cout << '\n';
   return console::exit_success;
 }

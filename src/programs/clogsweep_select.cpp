@@ -5,10 +5,10 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/results/selection.hpp"
 #include "clog/store/run_table.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
 
@@ -33,7 +33,7 @@ runs. For a fit, select rows by parameters: rows selected by their results are a
   const store::SweepFile selected = results::select(path, conditions, origin_of_table(line));
   results::write(selected, {}, output);
   std::cout << console::printable(output) << ": "
-            << sweep::counted(static_cast<std::int64_t>(selected.rows.size()), "row") << '\n';
+            << count_text(static_cast<std::int64_t>(selected.rows.size()), "row") << '\n';
   return console::exit_success;
 }
 

@@ -273,9 +273,10 @@ void use_laboratory(cli::CommandLine& line) {
   use_laboratories(line, none);
 }
 
-results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows) {
+results::ScalesByLaboratory scales_of_rows(const cli::CommandLine& line,
+                                           const std::vector<sweep::RunRow>& rows) {
   if (line.has("lab")) return {{"", scale_of(laboratory_for(line, rows.empty() ? nullptr : &rows.front()))}};
-  results::Scales scales;
+  results::ScalesByLaboratory scales;
   for (const sweep::RunRow& row : rows) {
     const std::optional<LaboratoryText>& own = row.parameters.laboratory;
     if (!own || own->text().empty()) return {};

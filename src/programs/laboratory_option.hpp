@@ -24,7 +24,8 @@ void set_scales(const cli::CommandLine& line, std::vector<results::Group>& group
 
 /// The scale of the laboratory of --lab or, without --lab, of each laboratory of these rows; empty if some
 /// row has no laboratory. @throws Error
-results::Scales scales_of_rows(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
+results::ScalesByLaboratory scales_of_rows(const cli::CommandLine& line,
+                                           const std::vector<sweep::RunRow>& rows);
 
 /// The droplet's diameter in mm, from the laboratory of --lab or, without --lab, from the common laboratory
 /// of all rows; nullopt if there is neither. @throws Error

@@ -17,6 +17,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/fit/holm.hpp"
 #include "clog/fit/log_rank.hpp"
 #include "clog/results/selection.hpp"
@@ -25,7 +26,6 @@
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
 namespace {
@@ -169,7 +169,7 @@ std::vector<std::string> differing_columns(
 /// Names each comparison by its droplet, and gives its lengths in mm. @see compare()
 void name_droplets(Comparisons& comparisons,
                    const std::vector<std::pair<const RunRow*, const RunRow*>>& compared,
-                   const Scales& scales) {
+                   const ScalesByLaboratory& scales) {
   const auto scale_of = [&](const RunRow* row) -> const LaboratoryScale& { return scale_in(scales, *row); };
   std::vector<const RunRow*> rows;
   for (const auto& [here, there] : compared) {
@@ -201,7 +201,7 @@ void name_droplets(Comparisons& comparisons,
 
 }  // namespace
 
-const LaboratoryScale& scale_in(const Scales& scales, const RunRow& row) {
+const LaboratoryScale& scale_in(const ScalesByLaboratory& scales, const RunRow& row) {
   const auto of_all = scales.find("");
   return of_all != scales.end() ? of_all->second : scales.at(row.parameters.laboratory->check_sum());
 }
@@ -276,9 +276,9 @@ void correct_tests(Comparisons& all) {
 }
 
 bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
-                          const Scales& scales) {
+                          const ScalesByLaboratory& scales) {
   const bool is_scaled = !column.unit.empty() && column.unit != "degrees";
-  if (!is_scaled && column.name != "laboratory" && column.name != "obstacles") return false;
+  if (!is_scaled && !column.holds_check_sum()) return false;
   std::map<std::pair<double, double>, Value> known;
   return std::ranges::all_of(rows, [&](const RunRow* row) {
     const Value value = separating_value(column, *row);
@@ -310,7 +310,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
   if (std::ranges::none_of(columns, [&](const sweep::Column* one) { return one->name == column; })) {
     std::vector<std::string> names;
     for (const sweep::Column* one : columns) names.push_back(one->name);
-    const std::string meant = sweep::did_you_mean(column, names);
+    const std::string meant = did_you_mean(column, names);
     throw Error(fmt::format("invalid --by={} (no parameter of a run){}", name, hint_at_column(name, meant)));
   }
   std::map<Value, std::vector<RunRow>> rows;
@@ -327,7 +327,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 }
 
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within,
-                    const Scales& scales) {
+                    const ScalesByLaboratory& scales) {
   if (sides.size() < 2) throw std::invalid_argument("a comparison has two sides or more");
   for (const Side& side : sides) require_lengths(side);
   Comparisons comparisons;

@@ -13,9 +13,9 @@
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/comparison.hpp"
 #include "clog/sweep/columns.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "value_json.hpp"
 
 namespace clog::results {
@@ -136,7 +136,7 @@ std::string to_text(const Comparisons& comparisons) {
   text += "\n\n" + text_table(rows) + legend_of(flaws.doubts);
   if (flaws.num_failed > 0)
     text += fmt::format("   {} failed, and count{} as not clogged up to sound_distance\n",
-                        sweep::counted(flaws.num_failed, "run"), flaws.num_failed == 1 ? "s" : "");
+                        count_text(flaws.num_failed, "run"), flaws.num_failed == 1 ? "s" : "");
   if (std::ranges::any_of(comparisons.all, &Comparison::are_identical))
     text += "\nidentical: all runs end at the same places here and there, as copies of the same runs do\n";
   if (!have_pairs(comparisons)) {

@@ -15,12 +15,12 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Remaining time of unfinished runs, estimated from late ends of the sample.
-class Outlook {
+/// Residual time of unfinished runs, estimated from late ends of the sample.
+class ResidualTime {
  public:
   enum class Case { lowest, middle, highest };
 
-  explicit Outlook(std::span<const RunCost> sample) {
+  explicit ResidualTime(std::span<const RunCost> sample) {
     double shortest = infinite;
     for (const RunCost& run : sample)
       if (run.is_over)
@@ -77,12 +77,12 @@ class Outlook {
 /// Estimated cost of a sample divided by its upper bound.
 class Share {
  public:
-  Share(std::span<const RunCost> sample, double seconds_per_work, const Outlook& outlook,
-        Outlook::Case which) {
+  Share(std::span<const RunCost> sample, double seconds_per_work, const ResidualTime& residual,
+        ResidualTime::Case which) {
     for (const RunCost& run : sample) {
       const double longest = seconds_per_work * run.longest_work;
       const double left =
-          run.is_over || run.seconds >= longest ? 0 : outlook.seconds_left(run, longest, which);
+          run.is_over || run.seconds >= longest ? 0 : residual.seconds_left(run, longest, which);
       expected_.push_back(run.begin_seconds + run.seconds + left);
       longest_.push_back(run.begin_seconds + longest);
       expected_sum_ += expected_.back();
@@ -132,7 +132,7 @@ struct Pace {
   }
 };
 
-/// Expected seconds for each outlook, with the standard error of the middle outlook.
+/// Expected seconds for each ResidualTime::Case, with the standard error of the middle one.
 struct Expectation {
   double lowest = 0;
   double middle = 0;
@@ -146,7 +146,7 @@ SweepCost cost_with_interval(const Pace& pace, double bound, const Expectation& 
   SweepCost cost{.seconds_per_work = pace.seconds_per_work, .bound = bound};
   if (seconds.middle == 0) return cost;
   const double sampling = 1.96 * seconds.relative_error();
-  const auto factor = [&](double outlooks) { return std::exp(std::hypot(std::log(outlooks), sampling)); };
+  const auto factor = [&](double ratio) { return std::exp(std::hypot(std::log(ratio), sampling)); };
   // A run of the sample may have taken longer than the mean pace allows.
   cost.expected = std::min(bound, seconds.middle);
   cost.lower = cost.expected / factor(seconds.middle / seconds.lowest);
@@ -154,13 +154,13 @@ SweepCost cost_with_interval(const Pace& pace, double bound, const Expectation& 
   return cost;
 }
 
-/// The share of a sample for each outlook.
+/// The share of a sample for each ResidualTime::Case.
 class Shares {
  public:
-  Shares(std::span<const RunCost> runs, const Pace& pace, const Outlook& outlook)
-      : lowest_(runs, pace.seconds_per_work, outlook, Outlook::Case::lowest),
-        middle_(runs, pace.seconds_per_work, outlook, Outlook::Case::middle),
-        highest_(runs, pace.seconds_per_work, outlook, Outlook::Case::highest),
+  Shares(std::span<const RunCost> runs, const Pace& pace, const ResidualTime& residual)
+      : lowest_(runs, pace.seconds_per_work, residual, ResidualTime::Case::lowest),
+        middle_(runs, pace.seconds_per_work, residual, ResidualTime::Case::middle),
+        highest_(runs, pace.seconds_per_work, residual, ResidualTime::Case::highest),
         num_runs_(static_cast<std::int64_t>(runs.size())) {}
 
   /// Remaining time of the runs in the sample.
@@ -197,13 +197,13 @@ void add(Expectation& sum, const Expectation& more) {
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs) {
   const Pace pace(sample);
   const double bound = pace.longest(all_work, num_runs);
-  const Shares shares(sample, pace, Outlook(sample));
+  const Shares shares(sample, pace, ResidualTime(sample));
   return cost_with_interval(pace, bound, shares.of(bound, shares.error_of_all(num_runs)));
 }
 
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting) {
   const Pace pace_of_all(begun);
-  const Outlook outlook_of_all(begun);
+  const ResidualTime residual_of_all(begun);
   std::map<std::int64_t, std::vector<RunCost>> runs_of;
   for (const RunCost& run : begun) runs_of[run.parameter_set].push_back(run);
 
@@ -216,12 +216,12 @@ SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns>
     const bool has_end =
         std::any_of(runs.begin(), runs.end(), [](const RunCost& run) { return run.is_over; });
     const Shares& shares =
-        sets.emplace(set, Shares(runs, pace, has_end ? Outlook(runs) : outlook_of_all)).first->second;
+        sets.emplace(set, Shares(runs, pace, has_end ? ResidualTime(runs) : residual_of_all)).first->second;
     add(seconds, shares.left());
     for (const RunCost& run : runs)
       if (!run.is_over) bound += std::max(0.0, pace.seconds_per_work * run.longest_work - run.seconds);
   }
-  const Shares all(begun, pace_of_all, outlook_of_all);
+  const Shares all(begun, pace_of_all, residual_of_all);
   constexpr double error_of_strangers = 1;
   for (const WaitingRuns& runs : waiting) {
     if (runs.number == 0) continue;

@@ -11,10 +11,10 @@
 #include "clog/console/build_info.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/fit/survival.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/groups.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "value_json.hpp"
 
 namespace clog::results {
@@ -159,7 +159,7 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
   return text_table(rows_of(table, lengths, sigma_mm, confidence)) + legend_of(doubts) +
          fmt::format(
              "\nread: of {}, {} clogged (clogged = 1) and {} still moved where last seen (clogged = 0)\n",
-             sweep::counted(num_runs, "droplet"), num_clogs, num_runs - num_clogs);
+             count_text(num_runs, "droplet"), num_clogs, num_runs - num_clogs);
 }
 
 std::string lengths_csv(const DistanceTable& table, double confidence, std::optional<double> sigma_mm) {

@@ -17,6 +17,7 @@
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/fit/log_rank.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/keys.hpp"
@@ -418,7 +419,7 @@ DistanceTable read_distances(const std::string& path, const std::vector<std::str
         while (texts.size() > head->num_columns && texts.back().empty()) texts.pop_back();
         if (texts.size() != head->num_columns)
           throw Error(fmt::format("has {}, but the first line names {}",
-                                  sweep::counted(std::ssize(texts), "cell"), head->num_columns));
+                                  count_text(std::ssize(texts), "cell"), head->num_columns));
         std::vector<Value> labels;
         labels.reserve(head->labels.size());
         for (std::size_t i = 0; i < head->labels.size(); ++i) {
@@ -451,8 +452,7 @@ DistanceTable counted_from(double from, DistanceTable table) {
   table.from = from;
   if (num_left_out > 0)
     console::say(fmt::format("clogfit lengths: {}: left out, {} that ended before --from-distance={} {}",
-                             table.source, sweep::counted(num_left_out, "droplet"), shortest(from),
-                             table.unit));
+                             table.source, count_text(num_left_out, "droplet"), shortest(from), table.unit));
   return table;
 }
 
@@ -486,8 +486,8 @@ std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const st
   return all;
 }
 
-DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked,
-                           double confidence) {
+DistanceTable distances_of(const Side& side, const ScalesByLaboratory& scales,
+                           const std::vector<std::string>& asked, double confidence) {
   require_lengths(side);
   const bool is_in_mm =
       scales.size() > 1 || (!scales.empty() && (has_label(asked, "diameter") || has_label(asked, "angle")));

@@ -19,9 +19,9 @@
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/keys.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "result_columns.hpp"
 #include "value_json.hpp"
 
@@ -134,7 +134,7 @@ std::string note_of_rest(const std::vector<Group>& groups) {
   }
   if (num_resting == 0 || !has_clogging_length(groups.front().first_row)) return "";
   std::string text = fmt::format("   {} ended by max-time with the droplet at rest for {} t0 or longer",
-                                 sweep::counted(num_resting, "run"), console::plain(shortest_rest));
+                                 count_text(num_resting, "run"), console::plain(shortest_rest));
   if (const double dwell = shorter_dwell(shortest_rest); dwell >= known_from)
     text +=
         fmt::format(": --dwell={} counts {} as clogged", shortest(dwell), num_resting == 1 ? "it" : "them");
@@ -170,15 +170,15 @@ std::string left_out(const std::vector<Group>& groups) {
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "
         "runs\n",
-        sweep::counted(num_left_out, "run"));
+        count_text(num_left_out, "run"));
   if (num_interrupted > 0)
     text += fmt::format(
         "   {} {} unfinished: lambda holds for the distances reached so far, and the clogs so far are the "
         "early ones\n",
-        sweep::counted(num_interrupted, "run"), num_interrupted == 1 ? "is" : "are");
+        count_text(num_interrupted, "run"), num_interrupted == 1 ? "is" : "are");
   if (num_repeated > 0)
     text += fmt::format("   {} repeat droplets of longer runs and do not count (--pool)\n",
-                        sweep::counted(num_repeated, "run"));
+                        count_text(num_repeated, "run"));
   if (num_failed > 0) {
     text += fmt::format("   {} failed; the column `message` says why", num_failed);
     if (has_clogging_length(groups.front().first_row))
@@ -204,7 +204,7 @@ std::vector<bool> varying_columns(const std::vector<Group>& groups) {
 
 /// Whether groups with equal other values always have equal values, too.
 template <class Value, class Others>
-bool follows(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
+bool is_determined_by(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
   std::map<decltype(others_of(groups.front())), decltype(value_of(groups.front()))> known;
   return std::ranges::all_of(groups, [&](const Group& group) {
     return known.try_emplace(others_of(group), value_of(group)).first->second == value_of(group);
@@ -219,7 +219,7 @@ bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const
       if (shown[i]) values.push_back(group_columns()[i]->get(group.first_row));
     return values;
   };
-  return follows(
+  return is_determined_by(
       groups, [&](const Group& group) { return group_columns()[place]->get(group.first_row); }, shown_values);
 }
 
@@ -262,12 +262,13 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
         (varies[shown.size()] && !is_automatic_everywhere && !group_of_only_model(*column, groups)) ||
         (column->get(first) != Value() && is_of(scene_of(run).gap_key)) || is_stiffness);
   }
-  // The number of vertices comes first, then the time step, because other automatic values follow from both.
+  // Columns from which automatic values follow come first.
   std::vector<std::size_t> order(shown.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [](std::size_t i) {
-    const std::string& name = group_columns()[i]->name;
-    return name == "vertices" ? 0 : name == "time_step" ? 1 : 2;
+    const Parameter* parameter = group_columns()[i]->parameter;
+    const int place = parameter ? parameter->automatic_order : 0;
+    return std::pair(place == 0, place);
   });
   for (const std::size_t i : order)
     shown[i] = shown[i] || (varies[i] && !group_of_only_model(*group_columns()[i], groups) &&
@@ -340,7 +341,7 @@ ParameterColumns parameter_columns(const std::vector<Group>& groups, const std::
     const auto cell = [&groups, &column, digits](const Group& group) {
       return rounded_text(group, groups, column, digits) + star_of(column, group.first_row);
     };
-    if (columns.droplets.empty() || !follows(groups, cell, droplet_of))
+    if (columns.droplets.empty() || !is_determined_by(groups, cell, droplet_of))
       columns.others.push_back({column.name, cell});
     else if (column.name != "laboratory")
       columns.following.push_back({column.name, cell});

@@ -21,10 +21,10 @@
 #include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/split.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "passages.hpp"
 
 namespace clog::results {
@@ -172,7 +172,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
     throw Error(fmt::format(
         "cannot fit --dwell={} ({} of a version that did not look for dwells); compute the sweep anew, into "
         "another file",
-        shortest(dwell), sweep::counted(num_unknown, "row")));
+        shortest(dwell), count_text(num_unknown, "row")));
   if (known_from > 0)
     throw Error(
         fmt::format("cannot fit --dwell={} (the rows do not hold all dwells as short as that; column "

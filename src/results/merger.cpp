@@ -16,7 +16,6 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/results/repetition.hpp"
-#include "clog/results/run_list.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/results/usual_parameters.hpp"
@@ -185,7 +184,8 @@ MergedSweep join(const std::vector<Part>& parts) {
 
 }  // namespace
 
-void number_tasks(const sweep::Settings& settings, store::SweepFile& table) {
+std::string number_tasks(const RunList& runs, store::SweepFile& table) {
+  const sweep::Settings settings = runs.settings();
   for (store::CircleFile& one : table.circles) {
     const auto named = std::ranges::find_if(settings.circle_files(),
                                             [&](const auto& file) { return file.second == one.circles; });
@@ -201,6 +201,7 @@ void number_tasks(const sweep::Settings& settings, store::SweepFile& table) {
     row.task = found == tasks.end() ? next++ : found->second;
   }
   std::ranges::sort(table.rows, {}, &RunRow::task);
+  return settings.to_config();
 }
 
 std::string part_line(const std::string& path, const store::SweepFile& file, const std::string& condition) {
@@ -254,8 +255,7 @@ MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance
   RunList runs;
   for (const Part& part : parts) add_runs(part, runs);
   if (runs.empty()) throw Error("there is nothing to merge: the files have no runs");
-  const sweep::Settings settings = runs.settings();
-  number_tasks(settings, merged.table);
+  const std::string config = number_tasks(runs, merged.table);
   std::unordered_map<std::string, const RunRow*> unfinished;
   for (const RunRow& row : merged.table.rows)
     if (sweep::is_unfinished(row.status)) unfinished.emplace(sweep::identity(row), &row);
@@ -267,7 +267,7 @@ MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance
         merged.snapshots.push_back(std::move(entry));
         unfinished.erase(row);
       }
-  merged.table.provenance = joint_provenance(maker, settings.to_config(), tables_of(parts), lines_of(parts));
+  merged.table.provenance = joint_provenance(maker, config, tables_of(parts), lines_of(parts));
   return merged;
 }
 
@@ -281,9 +281,7 @@ store::SweepFile read_together(const std::vector<std::string>& paths) {
   try {
     RunList runs;
     for (const Part& part : parts) add_runs(part, runs);
-    const sweep::Settings settings = runs.settings();
-    config = settings.to_config();
-    number_tasks(settings, merged.table);
+    config = number_tasks(runs, merged.table);
   } catch (const Error& error) {  // a config is from a version with other keys, or two contradict each other
     say_unread(joined(paths), "read together without their settings", error);
   }

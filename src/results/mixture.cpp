@@ -11,6 +11,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "clog/console/csv.hpp"
@@ -19,6 +20,7 @@
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/split.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/selection.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -45,6 +47,13 @@ struct Size {
   throw Error(fmt::format("invalid --mixture={} ({}) {}", text, why, remedy));
 }
 
+/// @param word  a part of the option's text
+double number_in(std::string_view word, const std::string& text) try {
+  return sweep::to_number(word);
+} catch (const Error& error) {
+  refuse(text, error.what(), "use e.g. diameter=2.8mm:0.3,3.2mm:0.7");
+}
+
 /// A value as text that is equal for equal values; empty for an unset one.
 std::string name_of(const Value& value) {
   const auto* const number = std::get_if<double>(&value);
@@ -67,7 +76,7 @@ class Key {
     }
     if (!column_)
       refuse(text, fmt::format("'{}' is no parameter of a run", name),
-             "give diameter or a parameter" + hint_at_column(name, sweep::did_you_mean(name_, names)));
+             "give diameter or a parameter" + hint_at_column(name, did_you_mean(name_, names)));
   }
 
   const std::string& name() const { return name_; }
@@ -78,12 +87,12 @@ class Key {
   /// The same text for a value that the user typed.
   std::string of(const std::string& value) const {
     if (column_)
-      return column_->kind == ValueKind::word ? value : shortest(twelve_digits(sweep::to_number(value)));
+      return column_->kind == ValueKind::word ? value : shortest(twelve_digits(number_in(value, text_)));
     const auto end_of_number = std::min(value.find_first_not_of("0123456789.+-eE"), value.size());
     const auto metres = console::metres_of(console::trimmed(value.substr(end_of_number)));
     if (!metres)
       refuse(text_, fmt::format("the diameter '{}' has no unit of length", value), "use e.g. 2.8mm");
-    return name_of_diameter(sweep::to_number(value.substr(0, end_of_number)) * *metres / 1e-3);
+    return name_of_diameter(number_in(value.substr(0, end_of_number), text_) * *metres / 1e-3);
   }
 
  private:
@@ -146,13 +155,8 @@ std::vector<Mixture::Part> parts_of(const std::string& list, const Key& key, con
     const auto colon = word.rfind(':');
     if (colon == std::string::npos)
       refuse(text, fmt::format("'{}' is not VALUE:WEIGHT", word), "use e.g. diameter=2.8mm:0.3,3.2mm:0.7");
-    try {
-      parts.push_back({key.of(console::trimmed(word.substr(0, colon))),
-                       sweep::to_number(console::trimmed(word.substr(colon + 1)))});
-    } catch (const Error& error) {
-      if (std::string(error.what()).starts_with("invalid --")) throw;
-      refuse(text, error.what(), "use e.g. diameter=2.8mm:0.3,3.2mm:0.7");
-    }
+    parts.push_back({key.of(console::trimmed(word.substr(0, colon))),
+                     number_in(console::trimmed(word.substr(colon + 1)), text)});
     if (parts.back().share < 0) refuse(text, "a weight is negative", "use weights of 0 or more");
     sum += parts.back().share;
     if (std::ranges::count(parts, parts.back().value, &Mixture::Part::value) > 1)

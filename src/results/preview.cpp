@@ -20,6 +20,7 @@
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/model/model.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/core/world/lattice.hpp"
 #include "clog/results/cost.hpp"
 #include "clog/results/stored_sweep.hpp"
@@ -268,7 +269,7 @@ void add_expected(Part& part, const sweep::Plan& plan, const Sample& sample, con
       std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
   const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
   part.line("# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them ended",
-            cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
+            cost.expected / hour, cost.lower / hour, cost.upper / hour, count_text(num_runs, "run"),
             sample.source, num_finished);
   part.json["at_most"] = cost.bound / hour;
   part.json["us_per_step"] = us_per_step;
@@ -281,7 +282,7 @@ void add_left(Part& part, const sweep::Plan& plan, const std::string& output, co
               const SweepCost& cost) {
   const SweepCost left = plus(cost, -stored.seconds);
   part.line("# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})",
-            console::printable(output), stored.num_done, sweep::counted(plan.num_runs(), "run"),
+            console::printable(output), stored.num_done, count_text(plan.num_runs(), "run"),
             plan.num_runs() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
   part.json["left"] = hours_json(left);
 }
@@ -295,7 +296,7 @@ void add_short_lengths(Part& part, const Sample& sample) {
   part.line(
       "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "
       "reflect the release void, not clogging (v); {}",
-      sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing,
+      sample.num_short, count_text(sample.num_clogged, "run"), sample.spacing,
       sample.has_own_circles ? "the share of droplets that got past says more"
                              : "give fewer obstacles, e.g. the default obstacle-density");
   part.json["short_lengths"] = {
@@ -312,7 +313,7 @@ SweepCost times(SweepCost cost, double factor) {
 void add_rounds(Part& part, const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
   const std::int64_t needed = rule.clogs_needed(), most = rule.most_seeds();
   part.line("# this is the first round: +-{} % needs {} per parameter set",
-            sweep::shortest(100 * rule.precision()), sweep::counted(needed, "clog"));
+            sweep::shortest(100 * rule.precision()), count_text(needed, "clog"));
   if (most < needed) part.line("# --most-seeds={} ends it before that; give {} or more", most, needed);
   const auto of_rounds = [&](std::int64_t num_seeds) {
     return times(cost, static_cast<double>(num_seeds) / static_cast<double>(first_seeds));
@@ -325,7 +326,7 @@ void add_rounds(Part& part, const SeedRule& rule, std::int64_t first_seeds, cons
   const SweepCost least = of_rounds(fewest), largest = of_rounds(most);
   part.line(
       "# all rounds: {} each if every run clogs, {}; {} each (--most-seeds) if few do, {}, at most {:.3g}",
-      sweep::counted(fewest, "seed"), expected(least), sweep::counted(most, "seed"), expected(largest),
+      count_text(fewest, "seed"), expected(least), count_text(most, "seed"), expected(largest),
       largest.bound / hour);
   Json if_all_clog = hours_json(least), if_few_clog = hours_json(largest);
   if_all_clog["seeds"] = fewest;
@@ -361,7 +362,7 @@ std::string seeds_in_words(const sweep::Plan& plan) {
     fewest = std::min(fewest, plan.num_seeds(group));
     most = std::max(most, plan.num_seeds(group));
   }
-  return fewest == most ? sweep::counted(most, "seed") : fmt::format("{} to {} seeds", fewest, most);
+  return fewest == most ? count_text(most, "seed") : fmt::format("{} to {} seeds", fewest, most);
 }
 
 }  // namespace
@@ -386,8 +387,8 @@ void print_tasks(const sweep::Plan& plan, PreviewFormat format) {
     }
     add_task(part, plan, task, columns);
   }
-  part.line("# {}: {}, {} each", sweep::counted(plan.size(), "task"),
-            sweep::counted(plan.num_groups(), "parameter set"), seeds_in_words(plan));
+  part.line("# {}: {}, {} each", count_text(plan.size(), "task"),
+            count_text(plan.num_groups(), "parameter set"), seeds_in_words(plan));
   if (const std::int64_t number = plan.size() - plan.num_runs(); number > 0)
     part.line("# {} the same {} in another laboratory, which {} once",
               number == 1 ? "1 task is" : fmt::format("{} tasks are", number), number == 1 ? "run" : "runs",
@@ -413,7 +414,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
   part.json = {{"runs", plan.num_runs()}, {"finished", stored.num_done}, {"spent", stored.seconds / hour}};
   if (is_done)
     part.line("# {} has all {}, which took {:.2g} core-hours{}", console::printable(output),
-              sweep::counted(plan.num_runs(), "run"), stored.seconds / hour,
+              count_text(plan.num_runs(), "run"), stored.seconds / hour,
               rule ? "" : "; nothing is left to do");
   if (!is_done || rule) {
     const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan, jobs);

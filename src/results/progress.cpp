@@ -55,9 +55,8 @@ void Progress::ended(const sweep::RunRow& row) {
   if (row.status == RunStatus::interrupted) return;
   ++num_ended_;
   SetTimes& set = set_of(row.task);
-  ++set.num_finished;
+  set.count(row);
   --set.num_waiting;
-  set.seconds += sweep::cost_seconds(row);
 }
 
 void Progress::not_ended(const sweep::RunRow& failed) {

@@ -12,6 +12,7 @@
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -152,7 +153,7 @@ void RunList::add_rows(const std::string& path, const sweep::Plan& plan,
       rows, [&](const sweep::RunRow& row) { return !add(plan, row) && sweep::fault_of(row).empty(); });
   if (num_left_out > 0)
     console::say(fmt::format("{}: no settings of this version describe {}; the rows are kept", path,
-                             sweep::counted(num_left_out, "run")));
+                             count_text(num_left_out, "run")));
 }
 
 namespace {

@@ -9,10 +9,11 @@
 
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/growth.hpp"
+#include "clog/results/latest_rows.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/row_check.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
 namespace {
@@ -36,7 +37,7 @@ std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& 
     records = contents->entries;
     if (contents->num_unreadable > 0)
       found.damage.push_back(
-          fmt::format("damaged in its journal: {}", sweep::counted(contents->num_unreadable, "record")));
+          fmt::format("damaged in its journal: {}", count_text(contents->num_unreadable, "record")));
   } catch (const Error& error) {
     found.damage.push_back(fmt::format("its journal was not used: {}", error.what()));
     return {};
@@ -48,7 +49,7 @@ std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& 
   });
   if (num_foreign > 0)
     found.damage.push_back(fmt::format("of another sweep in its journal: {}",
-                                       sweep::counted(static_cast<std::int64_t>(num_foreign), "record")));
+                                       count_text(static_cast<std::int64_t>(num_foreign), "record")));
   return records;
 }
 
@@ -59,30 +60,17 @@ Salvage salvage(const std::string& path) {
   Salvage found;
   found.table = std::move(examined.whole);
   found.damage = std::move(examined.damage);
-  std::vector<sweep::RunRow>& rows = found.table.rows;
-  std::unordered_map<std::string, std::size_t> places;
-  for (std::size_t i = 0; i < rows.size(); ++i) places.emplace(sweep::identity(rows[i]), i);
-  std::unordered_map<std::string, store::Journal::Entry> unfinished;
-  for (store::Journal::Entry& record : records_of(path, found)) {
-    const std::string run = sweep::identity(record.row);
-    const auto [place, is_new] = places.try_emplace(run, rows.size());
-    if (is_new)
-      rows.push_back(record.row);
-    else if (sweep::is_final(rows[place->second]))
-      continue;  // the journal lacks the last record
-    else
-      rows[place->second] = record.row;
-    const bool is_unfinished = sweep::is_unfinished(record.row.status);
-    if (!is_unfinished) ++found.num_from_journal;
-    if (is_unfinished && !record.snapshot.empty())
-      unfinished.insert_or_assign(run, std::move(record));
-    else
-      unfinished.erase(run);
+  std::vector<store::Journal::Entry> records = records_of(path, found);
+  std::vector<sweep::RunRow> rows;
+  for (const LatestRow& run : latest_rows(found.table.rows, records)) {
+    interrupt_if_running(rows.emplace_back(run.row()));
+    if (!run.record) continue;
+    const bool is_unfinished = sweep::is_unfinished(run.record->row.status);
+    if (!is_unfinished && !run.was_final()) ++found.num_from_journal;
+    if (is_unfinished && !run.record->snapshot.empty()) found.snapshots.push_back(std::move(*run.record));
   }
-  for (sweep::RunRow& row : rows)
-    if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
   std::ranges::stable_sort(rows, {}, &sweep::RunRow::task);
-  for (auto& [run, record] : unfinished) found.snapshots.push_back(std::move(record));
+  found.table.rows = std::move(rows);
   return found;
 }
 

@@ -8,6 +8,7 @@
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/fit/clogging_length.hpp"
 #include "clog/results/groups.hpp"
 #include "clog/sweep/columns.hpp"
@@ -95,11 +96,11 @@ std::string SeedRule::text() const {
   return fmt::format(
       "seeds are added, in rounds, to every parameter set with fewer than {} clogs (a 95 % interval of "
       "lambda within +-{} %), up to {}",
-      clogs_needed(), sweep::shortest(100 * precision_), sweep::counted(most_seeds_, "seed"));
+      clogs_needed(), sweep::shortest(100 * precision_), count_text(most_seeds_, "seed"));
 }
 
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan) {
-  const std::string sets = sweep::counted(rule.num_groups(), "parameter set");
+  const std::string sets = count_text(rule.num_groups(), "parameter set");
   std::string reached = fmt::format("{} of {} reached --until-precision", rule.num_reached(), sets);
   if (rule.unreached().empty()) return reached;
   constexpr std::size_t most_named = 4;
@@ -108,7 +109,7 @@ std::string outcome(const SeedRule& rule, const sweep::Plan& plan) {
   for (const SeedRule::Unreached& one : rule.unreached()) {
     if (named.size() == most_named) break;
     named.push_back(fmt::format("{} with {} of {} seeds{}", name_of(one.group, plan, differing),
-                                sweep::counted(one.num_clogs, "clog"), one.num_seeds,
+                                count_text(one.num_clogs, "clog"), one.num_seeds,
                                 one.num_failed > 0 ? fmt::format(", {} failed", one.num_failed) : ""));
   }
   if (rule.unreached().size() > most_named)

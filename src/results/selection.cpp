@@ -12,8 +12,9 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/split.hpp"
+#include "clog/core/tools/wording.hpp"
+#include "clog/results/latest_rows.hpp"
 #include "clog/results/merger.hpp"
-#include "clog/results/run_list.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -28,7 +29,7 @@ const sweep::Column& find_column(const std::string& name, const std::string& con
   for (const sweep::Column& column : columns) names.push_back(column.name);
   std::string meant = name;
   std::ranges::replace(meant, '-', '_');
-  if (std::ranges::find(names, meant) == names.end()) meant = sweep::did_you_mean(meant, names);
+  if (std::ranges::find(names, meant) == names.end()) meant = did_you_mean(meant, names);
   throw Error(fmt::format("invalid condition '{}' (the table has no column '{}'){}", condition, name,
                           hint_at_column(name, meant)));
 }
@@ -126,17 +127,11 @@ store::SweepFile select(const std::string& path, const std::vector<std::string>&
   });
   if (file.rows.empty())
     throw Error(fmt::format("no row of {} satisfies {}", path, joined(conditions, " and ")));
-  for (sweep::RunRow& row : file.rows)
-    if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
+  std::ranges::for_each(file.rows, interrupt_if_running);
   RunList runs;
   runs.add_rows(path, plan, file.rows);
   const std::string part = part_line(path, file, joined(conditions, " and "));
-  std::string config;
-  if (!runs.empty()) {
-    const sweep::Settings settings = runs.settings();
-    config = settings.to_config();
-    number_tasks(settings, file);
-  }
+  const std::string config = runs.empty() ? "" : number_tasks(runs, file);
   file.provenance = joint_provenance(maker, config, {&file}, part);
   return file;
 }

@@ -8,10 +8,10 @@
 
 #include "clog/console/json_text.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/progress.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/sweep/plan.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "value_json.hpp"
 
 namespace clog::results {
@@ -26,9 +26,7 @@ std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep
   std::vector<SetTimes> sets(static_cast<std::size_t>(plan.num_groups()));
   for (const RunRow& row : rows) {
     if (row.task < 0 || row.task >= plan.size()) continue;
-    SetTimes& set = sets[static_cast<std::size_t>(plan.group_of(row.task))];
-    ++(sweep::is_unfinished(row.status) ? set.num_running : set.num_finished);
-    set.seconds += sweep::cost_seconds(row);
+    sets[static_cast<std::size_t>(plan.group_of(row.task))].count(row);
   }
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     SetTimes& set = sets[static_cast<std::size_t>(group)];
@@ -65,8 +63,8 @@ std::string to_text(const std::string& path, const Status& status, double confid
                     SharedParameters shared) {
   std::string text = fmt::format(
       "{}: {} of {} finished{}, {}, {} flowing, {} failed", console::printable(path), status.num_finished(),
-      sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
-      text_of_clogs(status.by_outcome), status.count(RunStatus::flowing), status.count(RunStatus::failed));
+      count_text(status.runs.num_runs, "run"), status.runs.text_of_beyond(), text_of_clogs(status.by_outcome),
+      status.count(RunStatus::flowing), status.count(RunStatus::failed));
   for (const RunStatus rare : {RunStatus::passed, RunStatus::broken})
     if (const std::int64_t number = status.count(rare); number > 0)
       text += fmt::format(", {} {}", number, name(rare));

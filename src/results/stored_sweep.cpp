@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
+#include <span>
 
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
-#include "clog/store/journal.hpp"
+#include "clog/core/tools/wording.hpp"
+#include "clog/results/latest_rows.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -70,7 +71,7 @@ void say_unread(const std::string& path, const std::string& consequence, const E
 }
 
 /// Counts runs that have ended according to the journal of a stopped sweep, but not according to its table.
-static std::int64_t num_ended_in_journal(const std::string& path, const store::SweepFile& file) {
+static std::int64_t num_ended_in_journal(const std::string& path, std::span<sweep::RunRow> rows) {
   std::optional<store::Journal::Contents> contents;
   try {
     const std::string journal = store::journal_path(path);
@@ -80,23 +81,19 @@ static std::int64_t num_ended_in_journal(const std::string& path, const store::S
     say_unread(path, "runs that only its journal has are missing here", error);
   }
   if (!contents) return 0;
-  std::set<std::string> ended;
-  for (const store::Journal::Entry& entry : contents->entries)
-    if (sweep::is_final(entry.row)) ended.insert(sweep::identity(entry.row));
-  if (ended.empty()) return 0;
-  for (const sweep::RunRow& row : file.rows)
-    if (sweep::is_final(row)) ended.erase(sweep::identity(row));
-  return static_cast<std::int64_t>(ended.size());
+  std::erase_if(contents->entries, [](const auto& record) { return !sweep::is_final(record.row); });
+  return std::ranges::count_if(latest_rows(rows, contents->entries),
+                               [](const LatestRow& run) { return run.record && !run.was_final(); });
 }
 
 store::SweepFile read_with_caution(const std::string& path) {
   store::SweepFile file = store::read_sweep(path);
   if (const std::string words = store::caution(path, file); !words.empty()) console::say(words);
-  if (const std::int64_t number = num_ended_in_journal(path, file); number > 0)
+  if (const std::int64_t number = num_ended_in_journal(path, file.rows); number > 0)
     console::say(
         fmt::format("{}: {} ended that only the journal of the stopped sweep has; the sweep's own "
                     "command adds {}",
-                    path, sweep::counted(number, "run"), number == 1 ? "it" : "them"));
+                    path, count_text(number, "run"), number == 1 ? "it" : "them"));
   for (const store::CircleFile& one : file.circles) {
     const OwnCircles named(one.circles.circles(), one.name);
     for (sweep::RunRow& row : file.rows)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "clog/console/duration.hpp"
 #include "clog/fit/clogging_length.hpp"
@@ -14,6 +15,16 @@ std::string TimeLeft::text() const {
              : "time left not known yet";
 }
 
+void SetTimes::count(const sweep::RunRow& row) {
+  ++(sweep::is_unfinished(row.status) ? num_running : num_finished);
+  seconds += sweep::cost_seconds(row);
+}
+
+double SetTimes::mean_seconds() const {
+  if (num_finished == 0) return std::numeric_limits<double>::infinity();
+  return seconds / static_cast<double>(num_finished);
+}
+
 TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks) {
   SetTimes all;
   for (const SetTimes& set : sets) {
@@ -22,9 +33,6 @@ TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks) {
     all.seconds += set.seconds;
   }
   if (all.num_finished == 0) return {};
-  const auto mean = [](const SetTimes& runs) {
-    return runs.seconds / static_cast<double>(runs.num_finished);
-  };
   double tail = 0;
   for (std::int64_t i = 1; i <= all.num_running; ++i) tail += 1 / static_cast<double>(i);
   double seconds = 0, variance = 0;
@@ -32,7 +40,7 @@ TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks) {
     double means_left = static_cast<double>(set.num_waiting) / static_cast<double>(num_ranks);
     if (set.num_running > 0)
       means_left += tail * static_cast<double>(set.num_running) / static_cast<double>(all.num_running);
-    const double left = means_left * mean(set.num_finished > 0 ? set : all);
+    const double left = means_left * (set.num_finished > 0 ? set : all).mean_seconds();
     seconds += left;
     variance += left * left / static_cast<double>(std::max<std::int64_t>(set.num_finished, 1));
   }

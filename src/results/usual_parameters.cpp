@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <string_view>
 #include <vector>
 
 #include "clog/core/parameters/schema.hpp"
@@ -51,15 +49,6 @@ bool has_derived_density(const sweep::RunRow& row) {
          (!obstacles.density.per_area && !obstacles.density.share);
 }
 
-/// Whether automatic values of `one` follow from `other`: the time step follows from the vertices, the
-/// stiffness of walls from the vertices and the time step.
-bool follows(const Parameter& one, const Parameter& other) {
-  constexpr std::string_view chain[] = {"vertices", "time-step", "wall-stiffness"};
-  const auto* place = std::ranges::find(chain, std::string_view(one.key));
-  return std::find(std::begin(chain), place, std::string_view(other.key)) != place &&
-         place != std::end(chain);
-}
-
 enum class Others { all, independent };
 
 /// Whether the value is automatic for the row's other parameters: for all of them, or for those that do not
@@ -70,7 +59,7 @@ bool is_automatic_with(Others others, const sweep::Column& column, const sweep::
   RunParameters run = defaults_for(row);
   for (const Parameter& parameter : parameter_schema())
     if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
-        (others == Others::all || !follows(parameter, *column.parameter)))
+        (others == Others::all || !parameter.may_follow_from(*column.parameter)))
       parameter.set(run, parameter.get(row.parameters));
   run.obstacles.own = row.parameters.obstacles.own;  // with the circles
   return column.get(sweep::describe(resolve(run))) == column.get(row);
@@ -81,7 +70,7 @@ bool is_automatic_with(Others others, const sweep::Column& column, const sweep::
 /// Whether all values that may follow from the column's value follow from the row's other values.
 bool are_followers_automatic(const sweep::Column& column, const sweep::RunRow& row) {
   return std::ranges::all_of(sweep::columns(), [&](const sweep::Column& other) {
-    return !other.parameter || !follows(*other.parameter, *column.parameter) ||
+    return !other.parameter || !other.parameter->may_follow_from(*column.parameter) ||
            is_automatic_with(Others::all, other, row);
   });
 }

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "clog/core/tools/wording.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::results {
 namespace {
@@ -18,7 +18,7 @@ std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
                                            [](const auto& entry) { return !entry.snapshot.empty(); });
   const std::string text = fmt::format(
       "{}, {} of them with snapshots, {}",
-      sweep::counted(static_cast<std::int64_t>(journal.entries.size()), "record"), num_snapshots,
+      count_text(static_cast<std::int64_t>(journal.entries.size()), "record"), num_snapshots,
       journal.num_unreadable == 0 ? "all undamaged" : fmt::format("{} more damaged", journal.num_unreadable));
   if (is_alive) return text + "; a sweep is writing to it";
   return text + (journal.has_torn_end ? "; the last one is torn, as after a kill, and will be dropped" : "");
@@ -41,17 +41,16 @@ Verification verify(const std::string& path) {
   result.num_faults = static_cast<std::int64_t>(result.findings.size());
   const auto num_rows = static_cast<std::int64_t>(file.rows.size());
   if (result.num_faults > 0)
-    result.findings.push_back(fmt::format("{}: {}, {}", path, sweep::counted(num_rows, "undamaged row"),
-                                          sweep::counted(result.num_faults, "fault")));
+    result.findings.push_back(fmt::format("{}: {}, {}", path, count_text(num_rows, "undamaged row"),
+                                          count_text(result.num_faults, "fault")));
   else if (has_config)
-    result.findings.push_back(fmt::format("{}: {} of {}{}, all undamaged", path,
-                                          sweep::counted(num_rows, "row"),
-                                          sweep::counted(runs.num_runs, "run"), runs.text_of_beyond()));
+    result.findings.push_back(fmt::format("{}: {} of {}{}, all undamaged", path, count_text(num_rows, "row"),
+                                          count_text(runs.num_runs, "run"), runs.text_of_beyond()));
   else
     result.findings.push_back(
         fmt::format("{}: {}, all undamaged; its config is missing: the sweep's own command "
                     "restores it",
-                    path, sweep::counted(num_rows, "row")));
+                    path, count_text(num_rows, "row")));
   if (std::string words = store::caution(path, file); !words.empty())
     result.findings.push_back(std::move(words));
   const std::string journal = store::journal_path(path);

@@ -7,9 +7,9 @@
 #include "clog/console/clock.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/console/streams.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/sweep/row_limits.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::scheduler {
 namespace {
@@ -39,11 +39,11 @@ void announce(const std::string& output, const sweep::Plan& plan, const results:
   const std::int64_t num_waiting = state.num_waiting();
   if (num_left + num_waiting < num_runs)
     console::say(fmt::format("{} has {} of {}{}", output, num_runs - num_left - num_waiting,
-                             sweep::counted(num_runs, "run"),
+                             count_text(num_runs, "run"),
                              num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
   if (const std::int64_t number = state.num_beyond(); number > 0)
     console::say(fmt::format("{} also has {} outside this command's lists; {} kept", output,
-                             sweep::counted(number, "run"), number == 1 ? "it is" : "they are"));
+                             count_text(number, "run"), number == 1 ? "it is" : "they are"));
   if (const std::int64_t number = state.num_faulty(); number > 0)
     console::say(fmt::format("{}: {} physically impossible; the sweep recomputes those in its lists", output,
                              number == 1 ? "1 row is" : fmt::format("{} rows are", number)));
@@ -54,12 +54,12 @@ void announce(const std::string& output, const sweep::Plan& plan, const results:
                     : fmt::format("{} records are damaged; their runs resume from earlier records or restart",
                                   number)));
   if (const std::int64_t number = state.num_resumed(); number > 0)
-    console::say(fmt::format("{} {} from the last checkpoint", sweep::counted(number, "run"),
+    console::say(fmt::format("{} {} from the last checkpoint", count_text(number, "run"),
                              number == 1 ? "resumes" : "resume"));
   if (num_left == 0) return;
   for (const std::string& words : sweep::limits_of_results(plan)) console::say(words);
-  console::say(fmt::format("{} on {}, results go to {}", sweep::counted(num_left, "run"),
-                           sweep::counted(num_ranks, "computing rank"), output));
+  console::say(fmt::format("{} on {}, results go to {}", count_text(num_left, "run"),
+                           count_text(num_ranks, "computing rank"), output));
   if (num_waiting > 0)
     console::say(num_waiting == 1 ? "1 more run is the same in another laboratory and gets its result"
                                   : fmt::format("{} more runs are the same in another laboratory and get "

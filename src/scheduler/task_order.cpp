@@ -4,6 +4,8 @@
 #include <cassert>
 #include <limits>
 
+#include "clog/results/time_left.hpp"
+
 namespace clog::scheduler {
 
 void TaskOrder::add(const std::vector<std::int64_t>& tasks) {
@@ -49,10 +51,12 @@ void TaskOrder::begun_again(std::int64_t task, double now) { begin(number_of(tas
 
 TaskOrder::Turn TaskOrder::turn_of(std::size_t number, double now) const {
   const Group& group = groups_[number];
-  if (group.num_ended == 0) return {-std::numeric_limits<double>::infinity(), group.num_taken, number};
-  const auto num_running = static_cast<double>(group.num_taken - group.num_ended);
-  const double time_running = num_running * now - group.start_running;
-  return {-(group.time_ended + time_running) / static_cast<double>(group.num_ended), group.num_taken, number};
+  const std::int64_t num_running = group.num_taken - group.num_ended;
+  const double time_running = static_cast<double>(num_running) * now - group.start_running;
+  const results::SetTimes times = {.num_finished = group.num_ended,
+                                   .num_running = num_running,
+                                   .seconds = group.time_ended + time_running};
+  return {-times.mean_seconds(), group.num_taken, number};
 }
 
 std::int64_t TaskOrder::take(double now) {

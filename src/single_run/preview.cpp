@@ -7,7 +7,7 @@
 
 #include "clog/console/duration.hpp"
 #include "clog/console/exit_codes.hpp"
-#include "clog/sweep/value_list.hpp"
+#include "clog/core/tools/wording.hpp"
 
 namespace clog::single_run {
 
@@ -28,9 +28,9 @@ int print_preview(const std::string& config, const MostCost& cost) {
       std::cout,
       "# at most {:.4g} t0 in {:.4g} steps: {} on this machine; one that clogs or passes ends sooner\n",
       cost.time, cost.steps, duration);
-  fmt::print(std::cout, "# at most {}", sweep::counted(std::llround(cost.samples), "sample"));
+  fmt::print(std::cout, "# at most {}", count_text(std::llround(cost.samples), "sample"));
   if (cost.polygons > 0)
-    fmt::print(std::cout, " and {} ({:.3g} MB)", sweep::counted(std::llround(cost.polygons), "polygon"),
+    fmt::print(std::cout, " and {} ({:.3g} MB)", count_text(std::llround(cost.polygons), "polygon"),
                cost.polygon_bytes / 1e6);
   std::cout << '\n';
   return console::exit_success;

@@ -14,6 +14,7 @@
 #include "clog/console/printable.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/units.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/single_run/progress.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -208,7 +209,7 @@ int RecordedRun::report() const {
   if (!result.message.empty()) std::cout << console::printable(result.message) << '\n';
   const double vertex_steps =
       static_cast<double>(result.steps) * static_cast<double>(run_.droplet().state().size());
-  fmt::print(std::cout, "{}, {:.3f} s, {:.2f} ns per vertex-step\n", sweep::counted(result.steps, "step"),
+  fmt::print(std::cout, "{}, {:.3f} s, {:.2f} ns per vertex-step\n", count_text(result.steps, "step"),
              seconds_, 1e9 * seconds_ / vertex_steps);
   return result.status == RunStatus::interrupted ? console::exit_incomplete
          : result.status == RunStatus::failed    ? console::exit_internal_fault

@@ -19,7 +19,7 @@
 #include "circle_files.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
-#include "clog/sweep/value_list.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "droplets.hpp"
 #include "hdf5.hpp"
 #include "laboratory_texts.hpp"
@@ -171,9 +171,7 @@ class Damage : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-std::string counted_rows(std::size_t number) {
-  return sweep::counted(static_cast<std::int64_t>(number), "row");
-}
+std::string counted_rows(std::size_t number) { return count_text(static_cast<std::int64_t>(number), "row"); }
 
 /// Length of a dataset; rejects impossible sizes. @throws Damage
 std::size_t num_rows_of(hid_t dataset, std::size_t bytes_each) {

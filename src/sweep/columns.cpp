@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -226,18 +227,9 @@ std::vector<Column> columns_of_dwells() {
   return all;
 }
 
-std::vector<Column> make_columns() {
+std::vector<Column> columns_before_dwells() {
   using enum ColumnRole;
-  std::vector<Column> all = {
-      member("task", &RunRow::task, circumstance, "", "number of the task in its sweep")};
-  // The columns `model` and `obstacle_filling` come first, because they decide which other parameters a run
-  // has.
-  for (const Parameter& one : parameter_schema()) {
-    if (one.has_own_column) all.push_back(parameter_column(one));
-    if (one.key == std::string_view("model")) all.push_back(filling_column());
-  }
-  all.push_back(density_column());
-  const std::vector<Column> others = {
+  return {
       // Allows any word: presets of another version may have other names.
       member(
           "preset", &RunRow::preset, parameter, "",
@@ -297,6 +289,12 @@ std::vector<Column> make_columns() {
       member(
           "steady_time", [](auto& row) -> auto& { return row.steady.time; }, result, "t0",
           "time in which the droplet went steady_distance"),
+  };
+}
+
+std::vector<Column> columns_after_dwells() {
+  using enum ColumnRole;
+  return {
       member(
           "contacts", [](auto& row) -> auto& { return row.contacts.number; }, result, "",
           "number of contacts with obstacles, checked every 64 steps; an obstacle counts again after a "
@@ -398,10 +396,20 @@ std::vector<Column> make_columns() {
              "fault, do not count"),
       member("message", &RunRow::message, circumstance, "", "why the run failed", 256),
   };
-  all.insert(all.end(), others.begin(), others.end());
-  const std::vector<Column> dwells = columns_of_dwells();
-  const auto speed_ends = std::ranges::find(all, "contacts", &Column::name);
-  all.insert(speed_ends, dwells.begin(), dwells.end());
+}
+
+std::vector<Column> make_columns() {
+  std::vector<Column> all = {
+      member("task", &RunRow::task, ColumnRole::circumstance, "", "number of the task in its sweep")};
+  // The columns `model` and `obstacle_filling` come first, because they decide which other parameters a run
+  // has.
+  for (const Parameter& one : parameter_schema()) {
+    if (one.has_own_column) all.push_back(parameter_column(one));
+    if (one.key == std::string_view("model")) all.push_back(filling_column());
+  }
+  all.push_back(density_column());
+  for (const auto& columns_of : {columns_before_dwells, columns_of_dwells, columns_after_dwells})
+    std::ranges::move(columns_of(), std::back_inserter(all));
   return all;
 }
 

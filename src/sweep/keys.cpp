@@ -10,6 +10,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {

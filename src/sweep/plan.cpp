@@ -15,6 +15,7 @@
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/core/world/lattice.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -179,7 +180,7 @@ class Plan::Builder {
     OwnLists& own = plan_.products_.emplace_back();
     const bool is_first = plan_.axes_.empty();
     for (const Key& key : keys())
-      if (is_first && key.name != "seeds") plan_.axes_.push_back({&key, branch.values(key.name)});
+      if (is_first && !key.is_ensemble()) plan_.axes_.push_back({&key, branch.values(key.name)});
     for (std::size_t axis = 0; axis < plan_.axes_.size(); ++axis)
       if (const auto& values = branch.values(plan_.axes_[axis].key->name); values != plan_.axes_[axis].values)
         own[axis] = values;
@@ -270,7 +271,7 @@ class Plan::Builder {
     }
     if (groups.empty())
       throw Error(fmt::format("part {} of the sweep is empty: the whole sweep has only {}", shard.text(),
-                              counted(num_runs_, "run")));
+                              count_text(num_runs_, "run")));
     plan_.groups_ = std::move(groups);
   }
 
@@ -376,8 +377,7 @@ std::vector<std::string> Plan::texts(std::int64_t group) const {
   const Group& one = groups_[static_cast<std::size_t>(group)];
   std::vector<std::string> all;
   for (const std::string* text : texts(one.product, one.place)) all.push_back(*text);
-  const auto seeds = std::ranges::find(keys(), "seeds", &Key::name);
-  all.insert(all.begin() + std::distance(keys().begin(), seeds), "");
+  all.insert(all.begin() + static_cast<std::ptrdiff_t>(place_of_key("seeds")), "");
   return all;
 }
 

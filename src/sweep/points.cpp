@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -35,8 +36,8 @@ void Points::begin(const std::vector<std::string>& names) {
 void Points::add(const std::vector<std::string>& texts) {
   constexpr std::size_t most_points = 100'000;
   if (texts.size() != keys.size())
-    throw Error(fmt::format("a point has {} for {}", counted(std::ssize(texts), "value"),
-                            counted(std::ssize(keys), "key")));
+    throw Error(fmt::format("a point has {} for {}", count_text(std::ssize(texts), "value"),
+                            count_text(std::ssize(keys), "key")));
   if (rows.size() == most_points)
     throw Error(fmt::format("{}there are more than {} points; make several sweeps of them", in_file(*this),
                             most_points));

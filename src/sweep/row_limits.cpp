@@ -14,10 +14,11 @@
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
+#include "clog/core/tools/wording.hpp"
 #include "clog/core/world/bare_stretch.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -135,7 +136,7 @@ std::string possible_repetition(const Plan& plan) {
   return fmt::format(
       "droplets of {} of {} may travel farther than the length of their array and meet the same obstacles "
       "again: terminal-speed*max-time is up to {:.4g}, boxes*box {:.4g}; {}",
-      num_groups, counted(plan.num_groups(), "parameter set"), farthest, shortest_length,
+      num_groups, count_text(plan.num_groups(), "parameter set"), farthest, shortest_length,
       is_of_user ? "give a file of circles that is as long, or a shorter max-time"
                  : fmt::format("boxes={:.4g} is long enough", std::ceil(most_boxes)));
 }
@@ -196,7 +197,7 @@ std::vector<std::string> missing_diameters(const Plan& plan) {
     if (const auto number = std::ranges::count(own.circles(), 0.0, &Obstacle::radius); number > 0)
       lines[own.check_sum()] = fmt::format(
           "obstacles={} gives no diameter for {}; obstacle-diameter={} is used for {}", own.source(),
-          counted(number, "circle"), shortest(run.obstacles.diameter), number == 1 ? "it" : "them");
+          count_text(number, "circle"), shortest(run.obstacles.diameter), number == 1 ? "it" : "them");
   }
   std::vector<std::string> all;
   all.reserve(lines.size());

@@ -32,9 +32,7 @@ RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> 
     : run_parameters_(std::move(run)),
       snapshot_(snapshot.begin(), snapshot.end()),
       arrays_(std::move(arrays)),
-      row_(describe(run_parameters_)) {
-  row_.task = task;
-}
+      row_(begun_row(run_parameters_, task)) {}
 
 /// Restores the run from the snapshot, if a run with these parameters can have written it. Otherwise, for
 /// instance if another version has written the snapshot, the run restarts, with the same result.
@@ -76,14 +74,10 @@ bool RunJob::advance() {
 
 RunRow RunJob::row() const {
   RunRow row = row_;
-  if (run_ || !over_) {
-    RunResult result;
-    if (run_) result = run_->result();
-    if (!over_) result.status = RunStatus::interrupted;
-    record(result, row);
-    if (run_ && over_) row.family = run_->members();
-    if (row.status != RunStatus::failed) row.message = why_restarted_;
-  }
+  if (run_) record(run_->result(), row);
+  if (run_ && over_) row.family = run_->members();
+  if (!over_) row.status = RunStatus::interrupted;
+  if (row.status != RunStatus::failed) row.message = why_restarted_;
   row.wall_seconds = wall_seconds_;
   row.processor_seconds = processor_seconds_;
   return row;

@@ -47,6 +47,13 @@ RunRow describe(const RunParameters& run) {
   return row;
 }
 
+RunRow begun_row(const RunParameters& run, std::int64_t task) {
+  RunRow row = describe(run);
+  row.task = task;
+  record(RunResult{}, row);
+  return row;
+}
+
 std::optional<double> observed_distance(const RunRow& row) {
   if (row.status != RunStatus::failed) return row.distance;
   if (is_known(row.sound_distance)) return row.sound_distance;

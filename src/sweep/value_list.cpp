@@ -6,11 +6,11 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/portable_math.hpp"
+#include "clog/core/tools/wording.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -231,10 +231,6 @@ std::string with_decimal_point(std::string_view text) {
   return fmt::format("{}.{}", whole, fraction);
 }
 
-std::string counted(std::int64_t number, const std::string& noun) {
-  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
-}
-
 double to_number(std::string_view text) {
   double value = 0;
   const bool has_plus = text.starts_with('+') && !text.starts_with("+-");  // which from_chars does not know
@@ -252,45 +248,6 @@ long long to_integer(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text_end, value);
   if (error != std::errc() || end != text_end) refuse_number(text, {end, text_end}, "is not an integer");
   return value;
-}
-
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-  const auto distance = [](std::string_view a, std::string_view b) {  // Levenshtein
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (const char letter : a) {
-      std::size_t diagonal = row[0]++;
-      for (std::size_t j = 0; j < b.size(); ++j) {
-        const std::size_t substituted = diagonal + (letter != b[j]);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
-      }
-    }
-    return row.back();
-  };
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates)
-    if (const std::size_t d = distance(word, candidate); d < best_distance) {
-      best_distance = d;
-      best = candidate;
-    }
-  return best;
-}
-
-std::vector<std::string> with_part(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string end = fmt::format("-{}", word);
-  const auto all_that = [&](const auto& holds) {
-    std::vector<std::string> all;
-    std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(all), holds);
-    return all;
-  };
-  if (word.empty()) return {};
-  auto ending = all_that([&](const std::string& candidate) { return candidate.ends_with(end); });
-  if (!ending.empty()) return ending;
-  return all_that([&](const std::string& candidate) {
-    return fmt::format("-{}-", candidate).find(end + '-') != std::string::npos;
-  });
 }
 
 }  // namespace clog::sweep

@@ -7,7 +7,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 759
+LONG_PYTHON_LINES = 748
 
 
 def prose(text):

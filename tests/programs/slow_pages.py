@@ -20,7 +20,7 @@ from support import FEW, ROOT, SMALL
 
 from clogsweep.commands import agreement, collision, figures, predict
 from clogsweep.paper.plate import CATALOGUE
-from clogsweep.paper.workshop import Override
+from clogsweep.paper.runner import Override
 
 FOLLOWED = {*pages.PAGES, *pages.tutorial()}
 PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", "gallery", "explanation", "developer")

@@ -20,7 +20,7 @@ from clogsweep.agreement.statements import FORMULA, NOTHING, STATEMENTS
 from clogsweep.agreement.verdicts import (AGREES, BY_MESH, DOES_NOT, FITTED, FORCED, IN_KIND, NOT_KNOWN, NOT_RUN,
                                           Finding, the_version, with_variants)
 from clogsweep.commands import agreement
-from clogsweep.paper import dilute, outlines
+from clogsweep.paper import dilute, outlines, runner
 from clogsweep.tools.errors import UserError
 
 FACTOR = 1.5  # Ratio of the upper end of a confidence interval to the value, and of the value to the lower end.
@@ -156,15 +156,36 @@ class Evidence(unittest.TestCase):
         self.assertEqual(passages.top_behind(way)["speed_ratio"], 0.86)
         self.assertIsNone(passages.top_behind(way[:5]))
 
-    def test_a_mesh_is_as_smooth_as_the_finest_within_a_tenth(self):
-        for noise, verdict in [({64: 0.03, 128: 0.0105, 256: 0.0095, 512: 0.01}, AGREES),
-                               ({64: 0.023, 128: 0.023, 256: 0.018, 512: 0.018}, IN_KIND),
-                               ({64: 0.018, 128: 0.018, 256: 0.018, 512: 0.018}, DOES_NOT),
-                               ({64: 0.04, 128: 0.03, 256: 0.02, 512: 0.01}, DOES_NOT)]:
-            runs = {count: unittest.mock.Mock(table=value) for count, value in noise.items()}
-            with unittest.mock.patch.object(passages.channels, "meshes",
-                                            return_value=runs), unittest.mock.patch.object(passages, "roughness", side_effect=float):
+    def test_a_smooth_mesh_lets_the_droplet_pass_and_hardly_ripples(self):
+        h = np.arange(-1, 1, 0.01)
+
+        def run(amplitude, status="passed"):
+            speed = 0.5 + 0.4 * np.tanh(8 * h) + amplitude * np.sqrt(2) * np.sin(2 * np.pi * h / 0.05)
+            table = np.array(list(zip(h, speed)), [("h", float), ("speed_ratio", float)])
+            return unittest.mock.Mock(table=table, word=lambda name: status)
+
+        for runs, verdict in [({64: run(0.03), 128: run(0.012), 256: run(0.001), 512: run(0)}, AGREES),
+                              ({64: run(0, "clogged"), 128: run(0.012), 512: run(0)}, AGREES),
+                              ({64: run(0.03), 128: run(0.03), 256: run(0.001), 512: run(0)}, IN_KIND),
+                              ({64: run(0.01), 128: run(0.01), 512: run(0)}, IN_KIND),
+                              ({64: run(0, "clogged"), 512: run(0, "clogged")}, DOES_NOT)]:
+            with unittest.mock.patch.object(passages.channels, "meshes", return_value=runs):
                 self.assertEqual(passages.profiles_are_smooth(None).verdict, verdict)
+
+    def test_lengths_that_grow_with_the_gap_at_some_stiffnesses_agree_qualitatively(self):
+        def group(stiffness, gap, length):
+            return {"wall_stiffness": stiffness, "obstacle_gap": gap, "clogs": 50, "clogging_length": length,
+                    "clogging_length_lower": 0.8 * length, "clogging_length_upper": 1.25 * length}
+
+        for wide, verdict in [((100, 200, 300), AGREES), ((10, 11, 300), IN_KIND), ((10, 11, 10), NOT_KNOWN)]:
+            groups = [one for stiffness, length in zip((1, 2, 3), wide)
+                      for one in (group(stiffness, 0.2, 10), group(stiffness, 0.5, length))]
+            self.assertEqual(lengths.grows_with_gap(groups, "wall_stiffness").verdict, verdict)
+
+    def test_rows_of_a_list_of_seeds_are_found_by_seed(self):
+        row = np.array([(3, 0.5)], [("seed", "i8"), ("line_tension", float)])[0]
+        self.assertEqual(runner.in_row(row, "seeds", "1"), "3")
+        self.assertEqual(runner.in_row(row, "line-tension", "1"), "0.5")
 
     def test_variants_that_agree_say_what_makes_the_nearest_model_agree(self):
         slides, rubbed, _, pinned = dilute.FAMILIES

@@ -15,7 +15,7 @@ from support import BIN, ROOT
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.calibration import profiles, search  # noqa: E402
 from clogsweep.calibration.deviation import correlation, root_mean_square, shape_residuals, speed_residuals  # noqa: E402
-from clogsweep.calibration.profiles import Profile, Scales  # noqa: E402
+from clogsweep.calibration.profiles import Profile, ReducedUnits  # noqa: E402
 from clogsweep.calibration.simulation import Clogrun  # noqa: E402
 from clogsweep.commands import calibrate, drag  # noqa: E402
 from clogsweep.results import laboratory  # noqa: E402
@@ -235,7 +235,7 @@ class SpeedFiles(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "speeds.csv"
             path.write_text(text)
-            return profiles.read_table(str(path), "d", Scales())[:2]
+            return profiles.read_table(str(path), "d", ReducedUnits())[:2]
 
     def test_decimal_commas_are_those_of_decimal_points(self):
         plain = "d [sigma];v [v_t]\n0.05;0.2\n0.1;0.45\n1.25;0.9\n"
@@ -258,7 +258,7 @@ class SpeedFiles(unittest.TestCase):
 
 
 class ProfileFiles(unittest.TestCase):
-    def read(self, text, scales=Scales(), encoding="utf-8"):
+    def read(self, text, scales=ReducedUnits(), encoding="utf-8"):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "profile.csv"
             path.write_text(text, encoding, newline="")
@@ -269,19 +269,19 @@ class ProfileFiles(unittest.TestCase):
         np.testing.assert_array_equal(profile, [[-1, 0, 1], [0.9, 0.4, 0.8], [1.01, math.nan, 1.02]])
 
     def test_they_are_read_in_laboratory_units(self):
-        profile = self.read("t [s],v [mm/s],h [mm]\r\n0,7,-3.5\r\n1,3.5,0\r\n2,10.5,7\r\n", Scales(3.5e-3, 7e-3))
+        profile = self.read("t [s],v [mm/s],h [mm]\r\n0,7,-3.5\r\n1,3.5,0\r\n2,10.5,7\r\n", ReducedUnits(3.5e-3, 7e-3))
         np.testing.assert_allclose(profile[:2], [[-1, 0, 2], [1, 0.5, 1.5]], rtol=1e-14)
 
     def test_they_are_read_as_spreadsheets_and_other_programs_write_them(self):
         plain = "h [\u00b5m],v [\u00b5m/s],A\n-1,2,1\n0,3,\n1,4,1.5\n"
-        expected = self.read(plain, Scales(1e-6, 1e-6))
+        expected = self.read(plain, ReducedUnits(1e-6, 1e-6))
         for text, encoding in [("sep=;\n" + plain.replace(",", " ; "), "utf-16"),
                                (plain.replace(",", "\t").replace("\n", "\r"), "latin-1"), (plain, "utf-8-sig"),
                                ('"# of R"\n"h [\u00b5m]" "v [\u00b5m/s]"  "A"\n -1 2 1\n0 3\n1 4   1.5 \n', "utf-8"),
                                (plain.replace(",", "\xa0,\xa0"), "utf-8"),
                                ("".join(f",{line}\n" for line in plain.splitlines()), "utf-8"),]:
             with self.subTest(text=text, encoding=encoding):
-                np.testing.assert_array_equal(self.read(text, Scales(1e-6, 1e-6), encoding), expected)
+                np.testing.assert_array_equal(self.read(text, ReducedUnits(1e-6, 1e-6), encoding), expected)
 
     def test_units_of_columns_are_those_of_clogfit_units(self):
         for unit, metres in profiles.METRES.items():
@@ -291,14 +291,15 @@ class ProfileFiles(unittest.TestCase):
 
     def test_mistakes_name_the_line(self):
         for text, scales, words in [
-            ("h [mm],v [mm/s]\n1,1\n", Scales(0, 1), "line 1: is in mm and needs --diameter"),
-            ("h,v\n1,1\n", Scales(), "no unit"),
-            ("h [furlong],v [v_t]\n", Scales(), r"line 1: unknown unit 'furlong' \(known: sigma, m, cm, mm, um, "),
-            ("x,y\n1,1\n", Scales(), "columns h and v"),
-            ("h [sigma],v [v_t]\n1,1\n1,fast\n", Scales(), "line 3: v: 'fast' is not a finite number"),
-            ("h [sigma],v [v_t]\n1,1\n1\n", Scales(), "line 3: has too few columns"),
-            ('h [sigma],v [v_t]\n1,1\n"1,1\n', Scales(), "line 3: "),
-            ("h [sigma],v [v_t]\n1,1\n", Scales(), "fewer than three frames"),
+            ("h [mm],v [mm/s]\n1,1\n", ReducedUnits(0, 1), "line 1: is in mm and needs --diameter"),
+            ("h,v\n1,1\n", ReducedUnits(), "no unit"),
+            ("h [furlong],v [v_t]\n", ReducedUnits(),
+             r"line 1: unknown unit 'furlong' \(known: sigma, m, cm, mm, um, "),
+            ("x,y\n1,1\n", ReducedUnits(), "columns h and v"),
+            ("h [sigma],v [v_t]\n1,1\n1,fast\n", ReducedUnits(), "line 3: v: 'fast' is not a finite number"),
+            ("h [sigma],v [v_t]\n1,1\n1\n", ReducedUnits(), "line 3: has too few columns"),
+            ('h [sigma],v [v_t]\n1,1\n"1,1\n', ReducedUnits(), "line 3: "),
+            ("h [sigma],v [v_t]\n1,1\n", ReducedUnits(), "fewer than three frames"),
         ]:
             with self.subTest(text=text), self.assertRaisesRegex(UserError, words):
                 self.read(text, scales)

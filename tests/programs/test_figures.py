@@ -153,9 +153,10 @@ class Parts(unittest.TestCase):
             reference, *compared = (Profile(*np.array(list(written[name])).T) for name in names)
             return {"deviations": [{"delta_v": root_mean_square(speed_residuals(reference, simulated)[0])} for simulated in compared]}
 
-        shop = SimpleNamespace(profiles=[], table=lambda name, _, rows: written.setdefault(name, list(rows)) and name, fit=fit)
+        runner = SimpleNamespace(
+            profiles=[], table=lambda name, _, rows: written.setdefault(name, list(rows)) and name, fit=fit)
         with unittest.mock.patch.object(channels, "profiles", lambda *_, **__: [run(0.01 + 0.0007 * number) for number in range(7)]):
-            plate = channels.perimeter_springs(shop)
+            plate = channels.perimeter_springs(runner)
         np.testing.assert_allclose([entry["delta_v"] for entry in plate.data], 0, atol=1e-12)
 
     def test_a_legend_stays_off_error_bars(self):

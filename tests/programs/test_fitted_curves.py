@@ -90,7 +90,8 @@ class Model(unittest.TestCase):
     def test_one_point_has_the_normal_interval_of_a_poisson_count(self):
         # With a wide prior, the posterior for one point has the mean log lambda = log(S/d) and the variance 1/d. For
         # many clogs the interval is close to the exact interval of a Poisson count, (chi2(2d), chi2(2d + 2))/2.
-        curve = model.curve_of_scales(known_points([[0]], [400], [2000]), model.Scales(1, (1,)), np.array([[0.0]]))
+        curve = model.curve_of_scales(known_points([[0]], [400], [2000]), model.Hyperparameters(1, (1,)),
+                                      np.array([[0.0]]))
         self.assertAlmostEqual(curve.mean[0], math.log(5), delta=1e-3)
         self.assertAlmostEqual(curve.deviation[0], 1 / 20, delta=1e-4)
         _, lower, upper = features.band(curve, 0.95)[:, 0]
@@ -99,7 +100,7 @@ class Model(unittest.TestCase):
 
     def test_a_constant_rate_gives_a_flat_curve_with_the_interval_of_all_clogs(self):
         x = np.log([[0.1], [0.3], [1], [3]])
-        curve = model.curve_of_scales(known_points(x, [100] * 4, [500] * 4), model.Scales(0.001, (1,)), x)
+        curve = model.curve_of_scales(known_points(x, [100] * 4, [500] * 4), model.Hyperparameters(0.001, (1,)), x)
         np.testing.assert_allclose(curve.mean, math.log(5), atol=1e-3)
         np.testing.assert_allclose(curve.deviation, 1 / 20, rtol=1e-3)
 
@@ -111,7 +112,7 @@ class Model(unittest.TestCase):
 
     def test_the_mode_is_that_of_a_general_optimiser_and_the_variance_that_of_the_full_hessian(self):
         x, clogs, distances = np.array([[0.0], [0.5], [2.0]]), np.array([3.0, 0, 7]), np.array([5.0, 40, 20])
-        scales = model.Scales(1.5, (0.8,))
+        scales = model.Hyperparameters(1.5, (0.8,))
         known = known_points(x, clogs, distances)
         covariance = model.kernel(x, x, scales) + model.JITTER * 1.5**2 * np.eye(3)
         precision = np.linalg.inv(covariance)

@@ -204,7 +204,7 @@ class InstalledByPip(unittest.TestCase):
 
     def test_it_has_the_configs_of_the_figures(self):
         said = self.called(self.venv / "bin/python", "-c",
-                           "from clogsweep.paper import workshop; print(workshop.CONFIGS)")
+                           "from clogsweep.paper import runner; print(runner.CONFIGS)")
         configs = pathlib.Path(said.strip())
         self.assertEqual(configs.parents[1].parent, next(self.venv.glob("lib/python3*")) / "site-packages")
         names = sorted(path.name for path in (ROOT / "jobs/figures").iterdir() if path.suffix in (".cfg", ".csv"))

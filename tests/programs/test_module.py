@@ -47,7 +47,7 @@ class Module(Analysis):
     def test_groups_are_those_of_clogfit(self):
         fit = self.sweep().fit()
         told = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
-        self.assertEqual(fit.told, told)
+        self.assertEqual(fit.output, told)
         self.assertEqual(fit.groups.line_tension.tolist(), [0.5, 3])
         self.assertEqual(fit.groups.clogging_length.tolist(), [group["clogging_length"] for group in told["groups"]])
         curve = fit.survival(1)
@@ -67,11 +67,11 @@ class Module(Analysis):
         self.assertTrue(fit.groups.relative_speed_steady.isna().all())
         for name in ("relative_speed_error", "capillary_number"):
             self.assertEqual(fit.groups[name].isna().tolist(), [False, True, True], name)
-        self.assertEqual([group["relative_speed"] is None for group in fit.told["groups"]], [False, True, True])
+        self.assertEqual([group["relative_speed"] is None for group in fit.output["groups"]], [False, True, True])
         axes, = fit.speeds().figure.axes
         # The speeds are those of all runs.
         self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1, 0.7]])
-        of_page = report.table_of_lengths(fit.known, fit.told["doubts"], table(self.folder / "s.h5"))
+        of_page = report.table_of_lengths(fit.known, fit.output["doubts"], table(self.folder / "s.h5"))
         cells = re.findall(r"<td><span>[^<]*</span><small>( \(mean of \d of \d runs: [^<]*\))</small></td>", of_page)
         self.assertEqual([re.search(r"\(.* runs", cell)[0] for cell in cells],
                          ["(mean of 3 of 4 runs", "(mean of 2 of 4 runs"])
@@ -101,7 +101,7 @@ class Module(Analysis):
     def test_options_of_a_fit_reach_clogfit(self):
         options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5, "row_angle": 10.0}
         words = [word for name, value in options.items() for word in (f"--{name.replace('_', '-')}", value)]
-        self.assertEqual(self.sweep().fit(**options).told,
+        self.assertEqual(self.sweep().fit(**options).output,
                          json.loads(self.succeed("clogfit", "s.h5", "--format", "json", *words).stdout))
 
     def test_curves_draw_themselves_are_saved_and_know_where_they_come_from(self):
@@ -184,7 +184,7 @@ class Module(Analysis):
             self.write(name, "x,y,diameter\n" + "".join(f"{x},{y},{diameter}\n" for x in range(1, 20, 2) for y in range(1, 20, 2)))
         one = self.sweep_of_own("obstacles=wide.csv")
         self.assertIn("circles of wide.csv", one.fit().curve().figure.axes[0].get_title())
-        self.assertIn("circles of wide.csv", Groups(one.fit().told).caption())
+        self.assertIn("circles of wide.csv", Groups(one.fit().output).caption())
         settings = report.settings(one.attributes["config"])
         self.assertIn("\nobstacles = wide.csv\n", settings)
         for untrue in ("obstacle-gap", "obstacle-density"):

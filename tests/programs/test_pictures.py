@@ -384,8 +384,8 @@ class Looks(Analysis):
         groups = self.fit(*SMALL, "max-time=60", "line-tension=0.05,3", "obstacle-gap=0.2,0.4", "seeds=1..2")
         curves = [(members, index, label, {}) for index, (label, members) in enumerate(groups.curves())]
         stiff = [([group for group in members if group["line_tension"] == 3], *others) for members, *others in curves]
-        shop = SimpleNamespace(columns=lambda _: groups.columns, confidence=lambda _: groups.confidence)
-        drawing = panels.draw(shop, "", [("all", curves), ("stiff", stiff)], [])
+        runner = SimpleNamespace(columns=lambda _: groups.columns, confidence=lambda _: groups.confidence)
+        drawing = panels.draw(runner, "", [("all", curves), ("stiff", stiff)], [])
         drawing.canvas.draw()
         self.assertEqual([[text.get_text()[:7] for text in axes.texts] for axes in drawing.axes], [[], ["not run"]])
         legend, = drawing.subfigs[1].legends

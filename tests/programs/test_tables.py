@@ -11,7 +11,7 @@ from support import QUICK, ROOT, ProgramTest
 
 from clogsweep.calibration import profiles
 from clogsweep.commands import critical_angle
-from clogsweep.paper import workshop
+from clogsweep.paper import runner
 from clogsweep.tools import tables
 from clogsweep.tools.errors import UserError
 
@@ -71,8 +71,10 @@ class Tables(Analysis):
     def readers_in_python(self):
         """Reads t.csv in this process, because commands take long to start."""
         path = self.folder / "t.csv"
-        return {"profile": lambda: profiles.read_profile(str(path)), "speeds": lambda: profiles.read_table(str(path), "d", profiles.Scales()),
-                "angles": lambda: critical_angle.read_angles(path, ["line_tension"]), "passage": lambda: workshop.measured(path)}
+        return {"profile": lambda: profiles.read_profile(str(path)),
+                "speeds": lambda: profiles.read_table(str(path), "d", profiles.ReducedUnits()),
+                "angles": lambda: critical_angle.read_angles(path, ["line_tension"]),
+                "passage": lambda: runner.measured(path)}
 
     def test_readers_in_python_refuse_the_same_errors(self):
         readers = self.readers_in_python()

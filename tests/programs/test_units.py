@@ -252,7 +252,7 @@ class Units(ProgramTest):
         self.succeed("clogsweep", "salvage", "both.h5", "--output", "salvaged.h5")
         self.check_two_droplets("salvaged.h5")
         groups = clogsweep.open([self.folder / name for name in files], BIN).fit().known
-        self.assertEqual({groups.said("laboratory", group["laboratory"]) for group in groups.members},
+        self.assertEqual({groups.parameter_label("laboratory", group["laboratory"]) for group in groups.members},
                          {"diameter = 0.8 mm", "diameter = 1.2 mm"})
         self.succeed("clogfit", "report", "both.h5", "--output", "r.html")
         self.assertIn("diameter = 0.8 mm", (self.folder / "r.html").read_text())

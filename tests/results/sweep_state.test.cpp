@@ -455,6 +455,17 @@ TEST_F(SweepStateTest, SalvagesResultsAndSnapshotsThatOnlyItsJournalHas) {
   EXPECT_EQ(resumed.start(1, 0).snapshot, snapshot_);
 }
 
+TEST_F(SweepStateTest, CountsASalvagedRunOnceHoweverOftenItFailed) {
+  {
+    SweepState state = open(2);
+    for (const RunStatus status : {RunStatus::failed, RunStatus::clogged}) {
+      state.start(0, 0);
+      state.report(report(state, 0, status, 2));
+    }
+  }
+  EXPECT_EQ(salvage(path()).num_from_journal, 1);
+}
+
 TEST_F(SweepStateTest, SalvagesNoRecordOfAnotherSweep) {
   open().finish();
   sweep::Settings settings = settings_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "clog/core/run/dwell_record.hpp"
+#include "clog/sweep/columns.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "support.hpp"
 
@@ -48,6 +49,18 @@ TEST(RunJob, IsInterruptedUntilItIsOver) {
   const Plan plan = small_plan("5");
   RunJob job(plan.task(0), 0);
   EXPECT_EQ(job.row().status, RunStatus::interrupted);
+}
+
+TEST(BegunRow, KnowsEveryResultThatIsKnownAtTheRelease) {
+  const RunParameters run = small_plan("5").task(0);
+  RunRow released = describe(run);
+  record(DropletRun(run).result(), released);
+  released.dwells = {};  // dwells count from the first step on
+  const RunRow begun = begun_row(run, 0);
+  for (const Column& column : columns()) {
+    const bool is_known = column.role != ColumnRole::result || column.get(begun) != Value();
+    EXPECT_TRUE(is_known || column.get(released) == Value()) << column.name;
+  }
 }
 
 TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {

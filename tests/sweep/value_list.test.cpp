@@ -15,6 +15,7 @@
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/wording.hpp"
 
 namespace clog::sweep {
 namespace {

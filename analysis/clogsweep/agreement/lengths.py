@@ -9,7 +9,7 @@ from scipy import stats
 from ..curves import features, model, points
 from ..paper import arrays, dilute
 from ..paper.dilute import PUBLISHED, Family
-from ..paper.workshop import Workshop
+from ..paper.runner import Runner
 from ..tools import rounded
 from ..tools.hints import Group, Numbers
 from .evidence import LEAST_LINEARITY, bounds, curves, fall_with_stiffness, falls, length_of, overall, shorter, trend
@@ -114,9 +114,9 @@ def two_mechanisms(groups: list[Group]) -> Finding:
 LEAST_HELP = 0.01  # A neighbour that bears less of the support is no help.
 
 
-def neighbours_support(shop: Workshop, family: Family) -> Finding:
-    shop.sweep(family.config)
-    rows = shop.rows(family.config)
+def neighbours_support(runner: Runner, family: Family) -> Finding:
+    runner.sweep(family.config)
+    rows = runner.rows(family.config)
     support = rows.wrapped_support[(rows.mechanism == "wrapped") & np.isclose(rows.friction, family.friction)]
     if support.empty:
         return Finding(NOT_KNOWN, "no wrapped clog")
@@ -145,7 +145,9 @@ def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) 
     alike = [f"{place:g}" for place, verdict in verdicts.items() if verdict == NOT_KNOWN]
     if alike:
         words.append(f"no clear difference at {', '.join(alike)}")
-    return Finding(overall(list(verdicts.values())), "; ".join(words))
+    found = set(verdicts.values())
+    verdict = IN_KIND if len(found) > 1 and AGREES in found else overall(list(verdicts.values()))
+    return Finding(verdict, "; ".join(words))
 
 
 def longer_in_wide_gaps(groups: list[Group]) -> Finding:
@@ -223,8 +225,8 @@ def published_length(groups: list[Group]) -> Finding:
                    f"{length_of(found[0])} at {found[0]['obstacle_density']:g} obstacles per σ²")
 
 
-def is_exponential(shop: Workshop) -> Finding:
-    group = shop.sweep("survival")[0]
+def is_exponential(runner: Runner) -> Finding:
+    group = runner.sweep("survival")[0]
     if group["clogs"] < dilute.ENOUGH_CLOGS or group["weibull_p_value"] is None:
         return Finding(NOT_KNOWN, f"{group['clogs']} clogs")
     return Finding(AGREES if group["weibull_p_value"] >= 0.05 else DOES_NOT,
@@ -232,10 +234,10 @@ def is_exponential(shop: Workshop) -> Finding:
                    f"p = {group['weibull_p_value']:.2g}")
 
 
-def energy_decays(shop: Workshop) -> Finding:
+def energy_decays(runner: Runner) -> Finding:
     """Judges how well a straight line fits ln E_k at the end of the run, after E_k has fallen to 1e10 times the clog's
     threshold."""
-    run = arrays.energies(shop)[0.3]
+    run = arrays.energies(runner)[0.3]
     if run.word("status") != "clogged":
         return Finding(DOES_NOT, f"the droplet is {run.word('status')}")
     energy = run.table["kinetic_energy_ratio"]
@@ -246,18 +248,18 @@ def energy_decays(shop: Workshop) -> Finding:
                    f"R² = {r_squared:.4f} of ln E_k over {decades:.0f} decades")
 
 
-def disks_fall_with_stiffness(shop: Workshop) -> Finding:
-    return fall_with_stiffness(curves(shop.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of)
+def disks_fall_with_stiffness(runner: Runner) -> Finding:
+    return fall_with_stiffness(curves(runner.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of)
 
 
-def disks_grow_with_gap(shop: Workshop) -> Finding:
-    return grows_with_gap(shop.sweep("clogging-sp"), "wall_stiffness")
+def disks_grow_with_gap(runner: Runner) -> Finding:
+    return grows_with_gap(runner.sweep("clogging-sp"), "wall_stiffness")
 
 
-def disks_diverge(shop: Workshop) -> Finding:
+def disks_diverge(runner: Runner) -> Finding:
     """Judges whether the softest disks of every gap travel without a clog."""
     softest = [min(curve, key=lambda group: group["wall_stiffness"])
-               for curve in curves(shop.sweep("clogging-sp"), "obstacle_gap").values()]
+               for curve in curves(runner.sweep("clogging-sp"), "obstacle_gap").values()]
     verdicts = [DOES_NOT if group["clogs"] else AGREES if bounds(group)[0] > LONG else NOT_KNOWN for group in softest]
     return Finding(overall(verdicts), ", ".join(f"gap {group['obstacle_gap']:g}: {length_of(group)}"
                                                 for group in softest))
@@ -268,24 +270,24 @@ APART = 0.25  # The article says that the models differ if the sag is larger tha
 ALIKE = 2.0  # Lengths with a larger ratio than this are not alike.
 
 
-def over_the_sag(shop: Workshop, config: str, groups: Sequence[Group]) -> list[tuple[float, Group]]:
+def over_the_sag(runner: Runner, config: str, groups: Sequence[Group]) -> list[tuple[float, Group]]:
     chosen = [group for group in groups if math.isclose(group["obstacle_gap"], 0.2)]
-    return sorted(zip(arrays.sags(shop, config, chosen), chosen), key=lambda point: point[0])
+    return sorted(zip(arrays.sags(runner, config, chosen), chosen), key=lambda point: point[0])
 
 
-def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
+def compared(runner: Runner, family: Family, is_beyond: bool) -> Finding:
     """Compares the lengths of polygons with those of disks with the same sag. With `is_beyond` the sags are larger than
     APART, and the lengths should differ; otherwise the sags are smaller, and the lengths should agree. Lengths agree if
     their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound serves as the
     length."""
-    disks = over_the_sag(shop, "clogging-sp", shop.sweep("clogging-sp"))
+    disks = over_the_sag(runner, "clogging-sp", runner.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]
 
     def of_disk(sag: float, number: Callable[[Group], float]) -> float:
         return math.exp(np.interp(math.log(sag), logs, [math.log(min(number(group), 1e12)) for _, group in disks]))
 
     right, words = [], []
-    for sag, polygon in over_the_sag(shop, family.config, family.of(shop.sweep(family.config))):
+    for sag, polygon in over_the_sag(runner, family.config, family.of(runner.sweep(family.config))):
         if disks[0][0] <= sag <= disks[-1][0] and (sag > APART) == is_beyond:
             ratio = dilute.known_length(polygon) / of_disk(sag, dilute.known_length)
             low, high = bounds(polygon)
@@ -299,8 +301,8 @@ def compared(shop: Workshop, family: Family, is_beyond: bool) -> Finding:
     return Finding(verdict, ratios if words else "no polygon has such a sag")
 
 
-def polygons_stop_at_once(shop: Workshop, family: Family) -> Finding:
-    curve = over_the_sag(shop, family.config, family.of(shop.sweep(family.config)))
+def polygons_stop_at_once(runner: Runner, family: Family) -> Finding:
+    curve = over_the_sag(runner, family.config, family.of(runner.sweep(family.config)))
     (last_sag, softest), (top_sag, longest) = curve[-1], max(curve, key=lambda point: dilute.known_length(point[1]))
     if bounds(softest)[1] < 1:
         verdict = AGREES

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import find_peaks
 
 from ..paper import channels
-from ..paper.workshop import Workshop
+from ..paper.runner import Runner
 from ..tools import rounded
 from .evidence import by_tolerance
 from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
@@ -18,20 +18,20 @@ from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 PUBLISHED_ERROR = 0.01
 
 
-def shape_at(shop: Workshop, h: float, published: float, contact: str) -> Finding:
-    way = channels.narrow(shop, contact).table
+def shape_at(runner: Runner, h: float, published: float, contact: str) -> Finding:
+    way = channels.narrow(runner, contact).table
     shape = float(np.interp(h, way["h"], way["shape_parameter"]))
     return Finding(by_tolerance(shape, published, PUBLISHED_ERROR), f"{shape:.3f}")
 
 
-def largest_shape(shop: Workshop, orifice: float, published: float, tolerance: float, contact: str) -> Finding:
-    row = channels.passage(shop, orifice, contact).row
+def largest_shape(runner: Runner, orifice: float, published: float, tolerance: float, contact: str) -> Finding:
+    row = channels.passage(runner, orifice, contact).row
     shape = row["largest_shape_parameter"]
     return Finding(by_tolerance(shape, published, tolerance), f"{shape:.3f}, {row['status'].decode()}")
 
 
-def first_minimum(shop: Workshop, contact: str) -> Finding:
-    h = slowest_before(channels.passage(shop, 0.7, contact).table)
+def first_minimum(runner: Runner, contact: str) -> Finding:
+    h = slowest_before(channels.passage(runner, 0.7, contact).table)
     return Finding(by_tolerance(h, -0.25, 0.1), f"{h:.2f}")
 
 
@@ -50,25 +50,25 @@ def top_behind(way: Any) -> Any:
     return behind[peaks[np.argmax(found["prominences"])]] if way["h"][-1] > 0.6 and len(peaks) else None
 
 
-def tops_of_speeds(shop: Workshop, orifice: float) -> tuple[list[float], str]:
+def tops_of_speeds(runner: Runner, orifice: float) -> tuple[list[float], str]:
     """The largest speeds of the droplets of figure 4 that pass, and a text about all droplets of this figure."""
-    tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(shop, orifice).items()}
+    tops = {tension: top_behind(run.table) for tension, run in channels.overshooting(runner, orifice).items()}
     words = [f"the droplet of {tension:g} does not pass" if top is None else f"{top['speed_ratio']:.2f} at {tension:g}"
              for tension, top in tops.items()]
     text = f"w = {orifice:g}, b_0/b_∞ = {channels.OVERSHOOTS[orifice]:g}: {', '.join(words)}"
     return [top["speed_ratio"] for top in tops.values() if top is not None], text
 
 
-def overshoots(shop: Workshop, contact: str) -> Finding:
-    top = top_behind(channels.passage(shop, 0.7, contact).table)
+def overshoots(runner: Runner, contact: str) -> Finding:
+    top = top_behind(channels.passage(runner, 0.7, contact).table)
     if top is None:
         return Finding(DOES_NOT, "the droplet does not pass")
     verdict = DOES_NOT if top["speed_ratio"] <= 1 else by_tolerance(top["h"], 0.3, 0.1)
     return Finding(verdict, f"{top['speed_ratio']:.2f} at h = {top['h']:.2f}")
 
 
-def second_minimum(shop: Workshop, contact: str) -> Finding:
-    way = channels.passage(shop, 0.7, contact).table
+def second_minimum(runner: Runner, contact: str) -> Finding:
+    way = channels.passage(runner, 0.7, contact).table
     top = top_behind(way)
     if top is None:
         return Finding(DOES_NOT, "the droplet does not pass")
@@ -79,40 +79,44 @@ def second_minimum(shop: Workshop, contact: str) -> Finding:
                    f"{lowest['speed_ratio']:.2f} at h = {lowest['h']:.2f}")
 
 
-def overshoot_shrinks(shop: Workshop) -> Finding:
-    tops, words = tops_of_speeds(shop, 0.7)
+def overshoot_shrinks(runner: Runner) -> Finding:
+    tops, words = tops_of_speeds(runner, 0.7)
     shrinks = len(tops) == 3 and tops[0] > tops[1] > max(tops[2], 1)
-    return Finding(AGREES if shrinks else DOES_NOT, words, tops_of_speeds(shop, 0.8)[1])
+    return Finding(AGREES if shrinks else DOES_NOT, words, tops_of_speeds(runner, 0.8)[1])
 
 
-def drag_exponent(shop: Workshop) -> Finding:
-    fit = channels.drag_of_walls(shop)[-1]
+def drag_exponent(runner: Runner) -> Finding:
+    fit = channels.drag_of_walls(runner)[-1]
     value, error = fit["near_wall_exponent"], fit["near_wall_exponent_error"] or 0.0
     return Finding(by_tolerance(value, 4 / 3, max(0.05, 2 * error)), f"{rounded.with_error(value, error)}")
 
 
-def profiles_are_smooth(shop: Workshop) -> Finding:
-    """Finds the meshes that give smooth speed profiles. The ripples on a smooth mesh, and on all finer meshes, are at
-    most a tenth larger than those on the finest mesh."""
-    noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
-    counts = sorted(noise)
-    rough = [count for count in counts if noise[count] > 1.1 * noise[counts[-1]]]
-    verdict = DOES_NOT if not rough or rough[-1] == counts[-2] else AGREES if rough[-1] == 64 else IN_KIND
-    ripples = ", ".join(f"{value:.3f} v_t with {count}" for count, value in noise.items())
-    return Finding(verdict, f"ripples of {ripples}")
+def profiles_are_smooth(runner: Runner) -> Finding:
+    """Finds the meshes on which the droplet passes with a smooth speed profile."""
+    runs = channels.meshes(runner)
+    finest = runs[max(runs)].table
+    noise = {count: ripples(run.table, finest) for count, run in runs.items()}
+    passes = {count: run.word("status") == "passed" for count, run in runs.items()}
+    smooth = [count for count in runs if passes[count] and noise[count] <= SMOOTH]
+    verdict = DOES_NOT if not smooth else AGREES if min(smooth) == 128 else IN_KIND
+    words = [f"{noise[count]:.2g} v_t with {count}" + ("" if passes[count] else " (does not pass)") for count in runs]
+    return Finding(verdict, f"ripples of {', '.join(words)}")
 
 
-def roughness(way: Any) -> float:
-    """The root mean square deviation of a speed profile from its running mean [v_t]. The mean is taken over a tenth of
-    a diameter."""
+SMOOTH = 0.02  # A quarter of 0.08, the deviation of a published simulation from its experiment [v_t].
+
+
+def ripples(way: Any, finest: Any) -> float:
+    """The ripples of a speed profile [v_t]: the root mean square of its difference from the profile on the finest mesh,
+    after subtraction of the difference's running mean over a tenth of a diameter."""
     h = np.arange(-0.9, 0.9, 0.005)
     known = (h > way["h"].min()) & (h < way["h"].max())
-    speed = np.interp(h[known], way["h"], way["speed_ratio"])
+    apart = np.interp(h[known], way["h"], way["speed_ratio"]) - np.interp(h[known], finest["h"], finest["speed_ratio"])
     width = 21
-    if len(speed) <= width:
+    if len(apart) <= width:
         return math.nan
-    mean = np.convolve(speed, np.ones(width) / width, "valid")
-    return float(np.sqrt(np.mean((speed[width // 2:-(width // 2)] - mean) ** 2)))
+    mean = np.convolve(apart, np.ones(width) / width, "valid")
+    return float(np.sqrt(np.mean((apart[width // 2:-(width // 2)] - mean) ** 2)))
 
 
 # Tilt [degrees], diameter [m] and terminal speed [m/s] of the experiments of Figs. 2 and 3.
@@ -131,17 +135,17 @@ def arithmetic(found: list[float], published: tuple[float, ...], tolerance: floa
                    ", ".join(f"{value:.3g}" for value in found) + f"; within {apart:.0%}")
 
 
-def tensions_of_experiments(_: Workshop) -> Finding:
+def tensions_of_experiments(_: Runner) -> Finding:
     found = [TENSION / (buoyancy(tilt) * OIL * diameter**2) for tilt, diameter, _ in EXPERIMENTS]
     return arithmetic(found, (0.57, 5.80, 3.47), 0.06)
 
 
-def speeds_of_experiments(_: Workshop) -> Finding:
+def speeds_of_experiments(_: Runner) -> Finding:
     found = [speed / math.sqrt(diameter * buoyancy(tilt)) for tilt, diameter, speed in EXPERIMENTS]
     return arithmetic(found, (0.08, 0.028, 0.032), 0.07)
 
 
-def tensions_scale(_: Workshop) -> Finding:
+def tensions_scale(_: Runner) -> Finding:
     """Compares ratios of line tensions. Values agree if they differ by at most twice their combined errors. The error
     of Gamma* is 6 %."""
     weights = [math.sin(math.radians(tilt)) * diameter**2 for tilt, diameter, _ in EXPERIMENTS]
@@ -152,22 +156,22 @@ def tensions_scale(_: Workshop) -> Finding:
                    ", ".join(f"{value:.3g} ± {value / 16:.1g}" for value in found))
 
 
-def calibrated_to_measured(_: Workshop) -> Finding:
+def calibrated_to_measured(_: Runner) -> Finding:
     """Divides the calibrated line tensions by those that follow from the published measurements."""
     found = [calibrated / measured for calibrated, measured in zip((0.16, 1.7, 1.08), (0.57, 5.80, 3.47))]
     return arithmetic(found, (0.28, 0.29, 0.31), 0.02)
 
 
-def tension_times_tilt(_: Workshop) -> Finding:
+def tension_times_tilt(_: Runner) -> Finding:
     """Gamma is inversely proportional to the sine of the tilt, so their product is the same for all tilts."""
     products = [tension * math.sin(math.radians(tilt)) for tension, tilt in channels.TILTS.items()]
     return arithmetic(products, (products[0],) * 3, 0.02)
 
 
-def springs_reach_a_plateau(shop: Workshop) -> Finding:
+def springs_reach_a_plateau(runner: Runner) -> Finding:
     """Two profiles that deviate from one experiment by 0.08 each deviate from each other by at most 0.16."""
     most = 2 * 0.08
-    of_presets = {preset: channels.spring_deviations(shop, preset)[1] for preset in ("elastic", "literal")}
+    of_presets = {preset: channels.spring_deviations(runner, preset)[1] for preset in ("elastic", "literal")}
     found = {preset: max(entry["delta_v"] for ratio, entry in deviations.items() if ratio < 0.01)
              for preset, deviations in of_presets.items()}
     return Finding(AGREES if max(found.values()) <= most else DOES_NOT if min(found.values()) > most else IN_KIND,
@@ -175,13 +179,13 @@ def springs_reach_a_plateau(shop: Workshop) -> Finding:
                    + ", ".join(f"{value:.2f} ({preset})" for preset, value in found.items()))
 
 
-def shapes_deviate_less(shop: Workshop) -> Finding:
+def shapes_deviate_less(runner: Runner) -> Finding:
     """Compares the deviations of shapes and of speeds between passages with different springs."""
-    entries = channels.spring_deviations(shop, "elastic")[1].values()
+    entries = channels.spring_deviations(runner, "elastic")[1].values()
     shares = [entry["delta_a"] / entry["delta_v"] for entry in entries]
     return Finding(AGREES if max(shares) <= 0.2 else IN_KIND if max(shares) < 1 else DOES_NOT,
                    f"Δ_A/Δ_v of {min(shares):.2g} to {max(shares):.2g} between springs of different stiffness")
 
 
-def not_published(_: Workshop) -> Finding:
+def not_published(_: Runner) -> Finding:
     return Finding(NOT_KNOWN, "-")

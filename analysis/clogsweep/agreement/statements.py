@@ -1,13 +1,13 @@
 """The statements of the article in its order: the place of each, its text, and how it is judged.
 
-A judge gets the workshop with the sweeps of the figures. for_families() and for_walls() repeat it for each law of the
+A judge gets the runner with the sweeps of the figures. for_families() and for_walls() repeat it for each law of the
 walls. A reason belongs to a verdict and is printed with it.
 """
 
 from functools import partial
 
 from ..paper.dilute import FAMILIES, MAPS, Family
-from ..paper.workshop import Workshop
+from ..paper.runner import Runner
 from . import frames, lengths, passages, speeds
 from .lengths import SLIDES
 from .verdicts import (DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, Judged, Statement, for_contacts, for_families, for_walls,
@@ -84,10 +84,10 @@ STATEMENTS = [
     Statement(
         "appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on",
         SURFACE,
-        "a mesh is smooth if its ripples exceed those of the finest mesh by at most a tenth; the coarsest smooth"
-        " mesh has 128",
+        "a mesh is smooth if the droplet passes and its profile ripples by at most 0.02 v_t about that of the finest"
+        " mesh; the coarsest smooth mesh has 128",
         passages.profiles_are_smooth, ("B1",),
-        {IN_KIND: "smooth only on finer meshes", DOES_NOT: "ripples shrink up to the finest mesh"}),
+        {IN_KIND: "another mesh is the coarsest smooth one"}),
     Statement(
         "4.1", "Γ_exp = 0.57, 5.80, 3.47 for the three tilts and diameters",
         FORMULA,
@@ -383,9 +383,9 @@ STATEMENTS = [
 ]
 
 
-def judge_all(shop: Workshop) -> tuple[list[Judged], int | None]:
+def judge_all(runner: Runner) -> tuple[list[Judged], int | None]:
     """Judges all statements.
-    @param shop  a workshop that runs nothing
+    @param runner  a runner that runs nothing
     @return the judged statements, and the model version of the sweeps, None without sweeps
     @throws UserError  if the sweeps have several model versions"""
-    return [judge(shop, one) for one in STATEMENTS], the_version(shop.model_versions())
+    return [judge(runner, one) for one in STATEMENTS], the_version(runner.model_versions())

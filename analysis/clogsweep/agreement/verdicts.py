@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from ..paper.dilute import FAMILIES, Family
-from ..paper.workshop import Workshop
+from ..paper.runner import Runner
 from ..tools.errors import NotThere, UserError
 from ..tools.hints import Group
 
@@ -46,7 +46,7 @@ class Statement:
     text: str
     model: str
     criterion: str
-    judge: Callable[[Workshop], Finding]
+    judge: Callable[[Runner], Finding]
     figures: tuple[str, ...] = ()
     reasons: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
@@ -86,29 +86,29 @@ def words_of_variants(found: Sequence[tuple[str, Finding]]) -> tuple[str, str]:
     return variants, "; ".join(f"{one}: {', '.join(of_verdict)}" for one, of_verdict in names.items())
 
 
-def for_contacts(judge: Callable[..., Finding], **arguments: Any) -> Callable[[Workshop], Finding]:
+def for_contacts(judge: Callable[..., Finding], **arguments: Any) -> Callable[[Runner], Finding]:
     """Judges a statement on passages through orifices with the published contact, which begins at half the distance of
     two vertices from the wall, and as a variant with contact at the surface.
     @param judge  has a parameter `contact`"""
-    def of_contacts(shop: Workshop) -> Finding:
-        published, surface = (judge(shop, contact=contact, **arguments) for contact in ("half-vertex", "surface"))
+    def of_contacts(runner: Runner) -> Finding:
+        published, surface = (judge(runner, contact=contact, **arguments) for contact in ("half-vertex", "surface"))
         return Finding(published.verdict, published.value, *words_of_variants([("contact at the surface", surface)]))
 
     return of_contacts
 
 
-def for_families(judge: Callable[[Workshop, Family], Finding],
-                 families: Sequence[Family] = FAMILIES) -> Callable[[Workshop], Finding]:
+def for_families(judge: Callable[[Runner, Family], Finding],
+                 families: Sequence[Family] = FAMILIES) -> Callable[[Runner], Finding]:
     """Judges a statement for each family of walls.
     @param families  the first is nearest to the published model"""
-    return lambda shop: with_variants({family: tried(judge, shop, family) for family in families})
+    return lambda runner: with_variants({family: tried(judge, runner, family) for family in families})
 
 
 def for_walls(judge: Callable[[list[Group]], Finding],
-              families: Sequence[Family] = FAMILIES) -> Callable[[Workshop], Finding]:
+              families: Sequence[Family] = FAMILIES) -> Callable[[Runner], Finding]:
     """Judges a statement from the groups of each family. The groups are sorted by gap, then by line tension."""
-    def of_family(shop: Workshop, family: Family) -> Finding:
-        groups = family.of(shop.sweep(family.config))
+    def of_family(runner: Runner, family: Family) -> Finding:
+        groups = family.of(runner.sweep(family.config))
         return judge(sorted(groups, key=lambda group: (group["obstacle_gap"], group["line_tension"])))
 
     return for_families(of_family, families)
@@ -129,8 +129,8 @@ class Judged:
         return "; ".join(filter(None, [reasons.get(self.finding.verdict), runs]))
 
 
-def judge(shop: Workshop, one: Statement) -> Judged:
-    found = tried(one.judge, shop)
+def judge(runner: Runner, one: Statement) -> Judged:
+    found = tried(one.judge, runner)
     if found.verdict == NOT_RUN:
         found = Finding(NOT_RUN, "python3 -m clogsweep agreement --run")
     return Judged(one, found)

@@ -8,13 +8,13 @@ from typing import Any
 
 from ..results import laboratory
 from ..tools.errors import ProgramFailed, UserError
-from .profiles import Scales
+from .profiles import ReducedUnits
 
 # Values for quantities that clogfit units requires. The values serve commands whose user did not give these quantities.
 UNKNOWN = {"diameter": "1 mm", "angle": "90 deg"}
 
 
-def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[dict[str, Any], Scales]:
+def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[dict[str, Any], ReducedUnits]:
     """Asks clogfit units. @return its answer, and the divisors of columns in laboratory units
 
     @param given  quantities by their names in a lab file, None if unknown
@@ -26,8 +26,8 @@ def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[d
     except ProgramFailed as failure:
         reason = re.sub("^.*lab.cfg (invalid )?", lambda found: "invalid --" if found[1] else "", str(failure))
         raise UserError(reason) from failure
-    return answer, Scales(answer["diameter_mm"] * 1e-3 if "diameter" in known else 0,
-                          answer["speed_mm_per_s"] * 1e-3 if "speed" in known else 0)
+    return answer, ReducedUnits(answer["diameter_mm"] * 1e-3 if "diameter" in known else 0,
+                                answer["speed_mm_per_s"] * 1e-3 if "speed" in known else 0)
 
 
 def print_json(answer: Mapping[str, Any], document: Mapping[str, Any]) -> None:

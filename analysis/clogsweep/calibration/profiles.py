@@ -29,7 +29,7 @@ class Profile(NamedTuple):
     shape: Numbers  # A = perimeter^2/(4 pi area); NaN where unknown.
 
 
-class Scales(NamedTuple):
+class ReducedUnits(NamedTuple):
     """Divisors that convert columns in laboratory units to reduced units [m, m/s]. A divisor is 0 if it is unknown."""
 
     diameter: float = 0
@@ -62,7 +62,7 @@ def factor(header: str, reduced: str, scale: float, option: str) -> float:
     return known[unit] / scale
 
 
-def read_table(path: str, length: str, scales: Scales) -> Numbers:
+def read_table(path: str, length: str, scales: ReducedUnits) -> Numbers:
     """Reads the columns `length`, v and A of a text file as spreadsheets write it (docs/how-to/own-obstacles.md), and
     converts them to reduced units.
 
@@ -111,7 +111,7 @@ def at(profile: Profile, h: Numbers) -> Profile:
                         for values in profile[1:]))
 
 
-def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void | None]:
+def read_profile(path: str, scales: ReducedUnits = ReducedUnits()) -> tuple[Profile, np.void | None]:
     """Reads a text file, or a file of clogrun channel. @return all its frames; the row, if clogrun wrote the file.
     @throws UserError; Damaged"""
     profile, row = read_run(path) if passages.is_hdf5(path) else (Profile(*read_table(path, "h", scales)), None)
@@ -120,7 +120,7 @@ def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void
     return profile, row
 
 
-def read_trial(path: str, scales: Scales = Scales()) -> tuple[Profile, Channel | None]:
+def read_trial(path: str, scales: ReducedUnits = ReducedUnits()) -> tuple[Profile, Channel | None]:
     """Reads a passage with which simulations are compared. @return the passage; its channel, if clogrun wrote the file.
     @throws UserError  also if the droplet did not pass; Damaged"""
     profile, row = read_profile(path, scales)

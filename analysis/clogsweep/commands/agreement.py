@@ -16,7 +16,7 @@ import sys
 
 from .. import agreement
 from ..paper import finished
-from ..paper.workshop import Workshop
+from ..paper.runner import Runner
 from ..reading import programs
 from . import command_line
 
@@ -42,10 +42,10 @@ def parse() -> argparse.Namespace:
 def body() -> int:
     arguments = parse()
     size = "full" if arguments.from_rows else arguments.size
-    shop = Workshop(size=size, ranks=arguments.ranks, folder=arguments.output / size,
+    runner = Runner(size=size, ranks=arguments.ranks, folder=arguments.output / size,
                     programs=programs.programs_in(arguments.programs), overrides=[],
                     draw_only=not (arguments.run or arguments.from_rows), rows_folder=arguments.from_rows)
     with contextlib.redirect_stdout(sys.stderr):  # what is run; the output is the table alone
-        judged = agreement.judge_all(shop)
+        judged = agreement.judge_all(runner)
     print(agreement.WRITERS[arguments.format](*judged), end="")
     return 0

@@ -65,7 +65,7 @@ def body() -> int:
                             (name != "obstacle_diameter", "key" not in columns[name], "automatic_in" in columns[name]))
         rows = stored.read_table(arguments.sweep, arguments.programs)
         if (rows["laboratory"] != "none").all():
-            groups = fits.told(programs.programs_in(arguments.programs) / "clogfit", arguments.sweep)["groups"]
+            groups = fits.run_clogfit(programs.programs_in(arguments.programs) / "clogfit", arguments.sweep)["groups"]
             for name in fits.DROPLETS:
                 rows[name] = rows["laboratory"].map({group["laboratory"]: group[name] for group in groups})
             parameters = [*fits.DROPLETS, *parameters]

@@ -34,7 +34,7 @@ def body() -> int:
     return 0
 
 
-def deviations(measured: profiles.Profile, file: str, scales: profiles.Scales) -> dict[str, str | float]:
+def deviations(measured: profiles.Profile, file: str, scales: profiles.ReducedUnits) -> dict[str, str | float]:
     """@throws UserError  that names the file if measured frames are upstream of its start"""
     simulated = profiles.read_profile(file, scales)[0]
     try:

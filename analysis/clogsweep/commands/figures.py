@@ -14,7 +14,7 @@ import sys
 
 from ..paper import figures, finished
 from ..paper.plate import CATALOGUE
-from ..paper.workshop import Override, Workshop, measured
+from ..paper.runner import Override, Runner, measured
 from ..reading import programs
 from ..tools.errors import NotThere, UserError
 from ..tools.texts import printable
@@ -60,25 +60,25 @@ def body() -> int:
     if arguments.from_rows and arguments.set:
         raise UserError("invalid --from-rows with --set (the rows are of the full configs); drop one of them")
     size = "full" if arguments.from_rows else arguments.size
-    shop = Workshop(size=size, ranks=arguments.ranks, folder=arguments.output / size, rows_folder=arguments.from_rows,
+    runner = Runner(size=size, ranks=arguments.ranks, folder=arguments.output / size, rows_folder=arguments.from_rows,
                     programs=programs.programs_in(arguments.programs),
                     overrides=[Override.parse(text) for text in getattr(arguments, "set")],
                     profiles=arguments.profile, draw_only=arguments.draw_only)
     for path in arguments.profile:
         measured(path)
     try:
-        shop.folder.mkdir(parents=True, exist_ok=True)
+        runner.folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UserError(f"cannot make {shop.folder} ({error.strerror}); give another --output") from error
+        raise UserError(f"cannot make {runner.folder} ({error.strerror}); give another --output") from error
     for name in names:
-        figures.refuse_unwritable(name, shop)
+        figures.refuse_unwritable(name, runner)
     command = " ".join([command_line.name(), *sys.argv[1:]])
     for name in names:
         try:
-            figures.write(CATALOGUE[name].draw(shop), CATALOGUE[name], shop, command)
+            figures.write(CATALOGUE[name].draw(runner), CATALOGUE[name], runner, command)
         except NotThere as missing:
             if not (arguments.from_rows and arguments.names == ["all"]):
                 raise
-            shop.take_sources()
+            runner.take_sources()
             print(printable(f"figure {name} is not drawn: {missing}"), file=sys.stderr)
     return 0

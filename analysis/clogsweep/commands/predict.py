@@ -93,7 +93,7 @@ def body() -> int:
     if arguments.output:
         fit: dict[str, Any] = {"groups": [], "confidence": 0.95}
         if arguments.measured:
-            fit = fits.told(folder_of_programs / "clogfit", arguments.measured)
+            fit = fits.run_clogfit(folder_of_programs / "clogfit", arguments.measured)
         from .. import style  # loads matplotlib, which only a picture needs
         from ..drawing import predicted
 

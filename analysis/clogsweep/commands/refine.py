@@ -185,8 +185,8 @@ def body() -> int:
             return driver.refine(search, members, launcher, options, points, arguments.output, arguments.max_hours)
         driver.store(points, driver.points_text(keys, search.first_round()))
         there = ["--output", arguments.output] if arguments.output and arguments.output.exists() else []
-        told = programs.run_program(clogsweep, *options, "--points", points, "--dry-run", "--format", "json", *there)
-        plan, cost = map(json.loads, told.rstrip("\n").split("\n"))
+        output = programs.run_program(clogsweep, *options, "--points", points, "--dry-run", "--format", "json", *there)
+        plan, cost = map(json.loads, output.rstrip("\n").split("\n"))
         print(plan["text"], cost["text"], sep="", end="")
         each = cost.get("expected", cost["spent"]) / plan["number_of_tasks"]
         print("".join(f"# {line}\n" for line in search.costs(each)), end="")

@@ -40,7 +40,7 @@ def body() -> int:
         fitted = fit.read(arguments.sweep, arguments.programs, *options)
         groups = fitted.known.with_lengths(arguments.sweep)
         curves, unit, source = survival_curve.of_groups(groups), "mm" if groups.are_in_mm else "sigma", fitted.source
-        mixture = survival_curve.of_mixture(fitted.told, unit)
+        mixture = survival_curve.of_mixture(fitted.output, unit)
         if arguments.mixture and not mixture:
             raise UserError(f"no place for --mixture ({arguments.sweep} is JSON without a mixture); give the sweep")
     figure = style.figure_of(survival_curve.draw_on, curves, unit, mixture)

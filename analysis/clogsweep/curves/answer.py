@@ -29,7 +29,7 @@ def of_sweep(clogfit: pathlib.Path, paths: Sequence[AnyPath], keys: Sequence[str
     @param keys  see points.find_keys()
     @param options  of clogfit
     @throws UserError; ProgramFailed with clogfit's reason"""
-    fit = fits.told(clogfit, *paths, *options)
+    fit = fits.run_clogfit(clogfit, *paths, *options)
     rows = [stored.read_rows(path, clogfit.parent) for path in paths]
     names = [name for name in stored.columns_of(rows[0]) if all(name in stored.columns_of(others) for others in rows)]
     together = np.concatenate([others[names] for others in rows])

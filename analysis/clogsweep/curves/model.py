@@ -35,7 +35,7 @@ SETTLED = 1e-10  # Newton's iteration ends when the log posterior gains less tha
 
 
 @dataclasses.dataclass(frozen=True)
-class Scales:
+class Hyperparameters:
     """The standard deviation of log lambda, and the correlation length of the logarithm of each key."""
 
     amplitude: float
@@ -89,7 +89,7 @@ class Curve:
 class Mode:
     """The maximum of the posterior for given scales, and its curvature there."""
 
-    scales: Scales
+    scales: Hyperparameters
     slopes: Numbers  # Gradient of the log likelihood at the mode, equal to K^-1 f.
     # Square roots of the expected numbers of clogs, W = S exp(-f). The curvature of the log likelihood is -W.
     roots: Numbers
@@ -103,7 +103,7 @@ def matern(distance: Numbers) -> Numbers:
     return (1 + x + x * x / 3) * np.exp(-x)
 
 
-def kernel(rows: Numbers, columns: Numbers, scales: Scales) -> Numbers:
+def kernel(rows: Numbers, columns: Numbers, scales: Hyperparameters) -> Numbers:
     product = np.full((len(rows), len(columns)), float(scales.amplitude**2))
     for key, length in enumerate(scales.lengths):
         # Each key has few different values on a grid, so the correlation is computed only for these values.
@@ -113,7 +113,7 @@ def kernel(rows: Numbers, columns: Numbers, scales: Scales) -> Numbers:
     return product + LEVEL_VARIANCE
 
 
-def find_mode(points: Points, scales: Scales) -> Mode:
+def find_mode(points: Points, scales: Hyperparameters) -> Mode:
     """Maximises the posterior, which is concave, by Newton's iteration. Steps that are too long are halved."""
     covariance = kernel(points.places, points.places, scales) + JITTER * scales.amplitude**2 * np.eye(len(points.places))
     exposures = points.distances * np.exp(-points.level)  # scaled such that log lambda is about zero
@@ -152,17 +152,17 @@ def curve_of_mode(points: Points, mode: Mode, places: Numbers) -> Curve:
     return Curve(across.T @ mode.slopes + points.level, kernel(places, places, mode.scales) - known.T @ known, mode.log_evidence)
 
 
-def curve_of_scales(points: Points, scales: Scales, places: Numbers) -> Curve:
+def curve_of_scales(points: Points, scales: Hyperparameters, places: Numbers) -> Curve:
     """The curve for given scales. @param places  in the form of Points.places"""
     return curve_of_mode(points, find_mode(points, scales), places)
 
 
-def all_scales(places: Numbers) -> list[Scales]:
+def all_scales(places: Numbers) -> list[Hyperparameters]:
     """All combinations of amplitudes and correlation lengths. Amplitudes and lengths are spread evenly on a logarithmic
     scale. The correlation length of a key with a single value is arbitrary."""
     ranges = np.ptp(places, axis=0)
     lengths = [[fraction * extent for fraction in RANGE_FRACTIONS] if extent > 0 else [1.0] for extent in ranges]
-    return [Scales(amplitude, chosen) for amplitude in AMPLITUDES for chosen in itertools.product(*lengths)]
+    return [Hyperparameters(amplitude, chosen) for amplitude in AMPLITUDES for chosen in itertools.product(*lengths)]
 
 
 def fit_curve(points: Points, places: Numbers) -> Curve:

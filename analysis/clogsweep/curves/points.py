@@ -158,7 +158,8 @@ def why_too_few(fit: Fit, members: Members, keys: Sequence[Column]) -> str:
     """The reason why these groups are too few for a curve. The text is empty if they are enough."""
     groups = [fit["groups"][index] for index in members.groups]
     names = " and ".join(key["key"] for key in keys)
-    where = " with " + ", ".join(told_of(name.replace("_", "-"), value) for name, value in members.shared.items()) if members.shared else ""
+    shared = [parameter_text(name.replace("_", "-"), value) for name, value in members.shared.items()]
+    where = " with " + ", ".join(shared) if shared else ""
     places = {tuple(place_of(group, keys)) for group in groups}
     clogging = {tuple(place_of(group, keys)) for group in groups if group["clogs"] > 0}
     if len(places) < FEWEST_VALUES:
@@ -171,13 +172,13 @@ def why_too_few(fit: Fit, members: Members, keys: Sequence[Column]) -> str:
     return ""
 
 
-def told(value: Any) -> str:
+def value_text(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def told_of(name: str, value: Any) -> str:
+def parameter_text(name: str, value: Any) -> str:
     """A parameter and its value."""
-    return f"no {name}" if value is None else f"{name}={told(value)}"
+    return f"no {name}" if value is None else f"{name}={value_text(value)}"
 
 
 def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Excluded]]:

@@ -11,7 +11,7 @@ from typing import Any
 from ..tools import rounded
 from ..tools.lists import numbers
 from .answer import ALL, CAUSES
-from .points import told, told_of
+from .points import parameter_text, value_text
 
 EVERY_ON_LINE = 8  # A curve of one key has 97 places, and every eighth is printed.
 ON_SIDE = 25
@@ -40,7 +40,7 @@ def text(answer: dict[str, Any], crossing: list[float]) -> str:
     keys = answer["keys"]
     lines = [f"lambda vs {' and '.join(keys)}, fitted; {100 * answer['confidence']:g} % intervals"]
     for curve in answer["curves"]:
-        shared = " ".join(told_of(name, value) for name, value in curve["shared"].items())
+        shared = " ".join(parameter_text(name, value) for name, value in curve["shared"].items())
         num_clogs = sum(point["clogs"] for point in curve["points"])
         lines += ["", f"{shared}{': ' if shared else ''}through {rounded.counted(len(curve['points']), 'point')} with {rounded.counted(num_clogs, 'clog')}"]
         if curve["common_obstacles"]:
@@ -52,7 +52,8 @@ def text(answer: dict[str, Any], crossing: list[float]) -> str:
         lines += [*_peak(answer, curve), *_crossings(answer, curve, crossing), "", *_places(answer, curve)]
     if answer["excluded"]:
         lines += ["", "in no curve:"]
-        lines += [f"  {', '.join(f'{key} {told(one[key])}' for key in keys)}: {one['reason']}" for one in answer["excluded"]]
+        lines += [f"  {', '.join(f'{key} {value_text(one[key])}' for key in keys)}: {one['reason']}"
+                  for one in answer["excluded"]]
     return "\n".join(lines) + "\n"
 
 

@@ -4,7 +4,7 @@ import pandas
 from matplotlib.axes import Axes
 
 from .. import style
-from ..labels import axis_label, said
+from ..labels import axis_label, parameter_label
 from ..tools.errors import UserError
 from ..tools.hints import Column
 
@@ -30,7 +30,7 @@ def draw_on(axes: Axes, table: pandas.DataFrame, columns: dict[str, Column]) -> 
     curves = [points for _, points in table.groupby(others)] if others else [table]
     for index, points in enumerate(curves):
         points = points.sort_values(abscissa)
-        label = ", ".join(said(columns[name], points[name].iloc[0]) for name in others)
+        label = ", ".join(parameter_label(columns[name], points[name].iloc[0]) for name in others)
         look = style.curve_style(index)
         places = points[abscissa] * style.side_by_side(index, len(curves), table[abscissa].tolist())
         middle = (points["lower"] + points["upper"]) / 2

@@ -138,7 +138,8 @@ def draw_outline(axes: Axes, groups: Groups, run: Trajectory) -> None:
     axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
     axes.set_ylabel(r"$y/\sigma$")
     names = [*groups.curve_parameters(), groups.abscissa]
-    said = ", ".join(groups.said(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name]))
-                     for name in names)
-    axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {said}\n{kind.outcomes[run.word('status')]}; "
+    label = ", ".join(
+        groups.parameter_label(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name]))
+        for name in names)
+    axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {label}\n{kind.outcomes[run.word('status')]}; "
                    f"{kind.outline}", fontsize=8)

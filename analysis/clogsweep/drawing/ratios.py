@@ -8,7 +8,7 @@ from typing import Any
 from matplotlib.axes import Axes
 
 from .. import style
-from ..labels import AXES, axis_label, is_number, said
+from ..labels import AXES, axis_label, is_number, parameter_label
 from ..reading import fits
 from ..tools.errors import UserError
 from ..tools.hints import Group
@@ -44,7 +44,7 @@ def curves_of(answer: dict[str, Any], abscissa: str) -> list[tuple[str, list[Com
 
 def value_label(name: str, value: float | str) -> str:
     if name in DROPLETS:
-        return said(DROPLETS[name], value)
+        return parameter_label(DROPLETS[name], value)
     return f"{name.replace('_', ' ')} {value:g}" if isinstance(value, int | float) else literal(value)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .. import style
-from ..labels import said
+from ..labels import parameter_label
 from ..labels.groups import Groups
 from ..reading import fits
 from ..tools.errors import UserError
@@ -63,7 +63,9 @@ def of_table(answer: dict[str, Any]) -> list[Curve]:
     droplets = {column["key"]: column for column in fits.droplet_columns().values()}
 
     def words(label: str, value: Any) -> str:
-        return said(droplets[label], value) if label in droplets and value is not None else literal(f"{label} {value:g}" if isinstance(value, int | float) else f"{label} {value}")
+        if label in droplets and value is not None:
+            return parameter_label(droplets[label], value)
+        return literal(f"{label} {value:g}" if isinstance(value, int | float) else f"{label} {value}")
 
     return [(", ".join(words(label, group[label]) for label in answer["labels"]), group) for group in answer["groups"]]
 

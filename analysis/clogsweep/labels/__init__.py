@@ -77,7 +77,7 @@ def symbol(column: Column) -> str:
     return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")
 
 
-def said(column: Column, value: float | str | None) -> str:
+def parameter_label(column: Column, value: float | str | None) -> str:
     """A parameter and its value in words, such as $N_v = 128$."""
     if "label" in column:
         return str(column["label"].format(value))

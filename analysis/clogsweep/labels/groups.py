@@ -11,7 +11,7 @@ from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
-from . import AXES, INTERFACES, axis_label, interface_of, is_number, runs_a_point, said, symbol
+from . import AXES, INTERFACES, axis_label, interface_of, is_number, runs_a_point, parameter_label, symbol
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # names by obstacle_filling
@@ -98,7 +98,7 @@ class Groups:
             return []
         points: dict[str, list[str]] = {}
         for one in self._fitted["excluded"]:
-            points.setdefault(one["reason"], []).append(self.said(self.abscissa, one[self.abscissa]))
+            points.setdefault(one["reason"], []).append(self.parameter_label(self.abscissa, one[self.abscissa]))
         return [f"{', '.join(dict.fromkeys(places))} ({reason})" for reason, places in points.items()]
 
     @property
@@ -174,20 +174,23 @@ class Groups:
     def curve_parameters(self) -> list[str]:
         """Names of the parameters in which the curves differ."""
         # Other values, such as the place of an exit, follow from the laboratory or the circles, so they are not needed.
-        told = [name for name in ("model", "laboratory", "obstacles") if self.varies(name)]
+        names = [name for name in ("model", "laboratory", "obstacles") if self.varies(name)]
         if self.are_in_mm:
             droplet = [name for name in fits.DROPLETS if self.varies(name) and name != self.abscissa]
-            told = droplet + [name for name in told if not self.follows(name, fits.DROPLETS)]
+            names = droplet + [name for name in names if not self.follows(name, fits.DROPLETS)]
         else:
-            told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
-                     and not self._is_automatic(name) and not self._is_of_preset(name) and not (told and self.follows(name, told))]
+            names += [name for name in self.columns
+                      if self.varies(name) and name != self.abscissa and self._is_number(name)
+                      and not self._is_automatic(name) and not self._is_of_preset(name)
+                      and not (names and self.follows(name, names))]
         # Words and automatic values that follow from labelled parameters add nothing, so they are left out, except for
         # the interface of a preset. A preset comes before the parameters that it sets.
-        rest = [name for name in self.columns if name not in told and name != self.abscissa]
+        rest = [name for name in self.columns if name not in names and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
-            if name == "preset" and len(self.values(name) & INTERFACES.keys()) > 1 or not self.follows(name, [self.abscissa, *told]):
-                told.append(name)
-        return self._of_models(told)
+            have_interfaces = name == "preset" and len(self.values(name) & INTERFACES.keys()) > 1
+            if have_interfaces or not self.follows(name, [self.abscissa, *names]):
+                names.append(name)
+        return self._of_models(names)
 
     def _of_models(self, names: Iterable[str]) -> list[str]:
         """Names of parameters in which groups differ, without those that follow from the model: one model has a single
@@ -199,10 +202,12 @@ class Groups:
     def symbol(self, name: str) -> str:
         return symbol(self.columns[name])
 
-    def said(self, name: str, value: float | str | None) -> str:
+    def parameter_label(self, name: str, value: float | str | None) -> str:
         if name == "laboratory" and value in self.laboratories:
             return literal(self.laboratory_label(str(value)))
-        return interface_of(str(value)) if name == "preset" else said(self.columns[name], self.named(name, value))
+        if name == "preset":
+            return interface_of(str(value))
+        return parameter_label(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
         """A parameter's value. User-supplied circles are stored as a checksum. The name of their file replaces the
@@ -233,7 +238,8 @@ class Groups:
 
     def _label(self, values: dict[str, Any]) -> str:
         """Names values. Parameters that a model lacks are left out."""
-        return ", ".join(self.said(name, value) for name, value in values.items() if value is not None or not self.varies("model"))
+        return ", ".join(self.parameter_label(name, value) for name, value in values.items()
+                         if value is not None or not self.varies("model"))
 
     def abscissa_key(self) -> str:
         """The name of the abscissa as a column of a user's table."""
@@ -265,7 +271,8 @@ class Groups:
         first = self.members[0]
         models = [name for model, name in (("dp", "deformable polygon"), ("sp", "soft disk")) if model in self.values("model")]
         words = [" and ".join(models)]
-        words += [self.said(name, first[name]) for name in self.columns if self._is_worth_a_word(name, first[name])]
+        words += [self.parameter_label(name, first[name]) for name in self.columns
+                  if self._is_worth_a_word(name, first[name])]
         if self.values("obstacle_filling") == {"saturated"}:
             words.append("saturated arrays")
         if share := self._share_of_saturated():

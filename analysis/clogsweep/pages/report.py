@@ -43,7 +43,8 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
             r = group["clogging_length"] * np.logspace(-2, 1, 100)
             axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--",
                       gid=style.mark("curve", [group]))
-        survival_curve.draw(axes, group, colour, groups.said(groups.abscissa, group[groups.abscissa]), begin=begin)
+        label = groups.parameter_label(groups.abscissa, group[groups.abscissa])
+        survival_curve.draw(axes, group, colour, label, begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
     style.label(axes, r"displacement along the flow $r/\sigma$", "$P(r)$, not yet clogged")
@@ -78,7 +79,8 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
             way = [begin, *(step["distance"] for step in steps), survival_curve.longest_way(group)]
             share = [0, *(step["probability"] for step in steps)]
             axes.step(way, [*share, share[-1]], where="post", color=colour, linewidth=1.2,
-                      label=groups.said(groups.abscissa, group[groups.abscissa]), gid=style.mark("point", [group]))
+                      label=groups.parameter_label(groups.abscissa, group[groups.abscissa]),
+                      gid=style.mark("point", [group]))
         axes.set_title(name, fontsize=10)
         axes.set_xlim(begin, longest)
         style.logarithmic_abscissa(axes)
@@ -391,8 +393,8 @@ def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathli
                                        clogrun, sweep, folder)
     outlines = side_by_side(framed(charts.draw(figure, f"outline {kind.outline}"), f"outline {kind.outline}")
                             for figure in drawn)
-    reached = "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>"
-                      for curve, said in passages.shares(groups, value))
+    reached = "".join(f"<li>{html.escape(f'{curve}: {share}' if curve else share)}</li>"
+                      for curve, share in passages.shares(groups, value))
     return {kind.heading: f"<ul>{reached}</ul>{side_by_side(curves)}", "Outlines": outlines or "<p>None.</p>"}
 
 

@@ -13,14 +13,14 @@ from matplotlib.axes import Axes
 from .. import style
 from ..drawing import surroundings, survival_curve
 from ..drawing.lengths import draw_lengths, draw_speeds, length_notes
-from ..labels import AXES, interface_of, said
+from ..labels import AXES, interface_of, parameter_label
 from ..reading import stored, trajectory
 from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Group, Numbers
 from .captions import describe
 from .plate import Plate, figure
-from .workshop import Workshop
+from .runner import Runner
 
 if TYPE_CHECKING:
     import pandas
@@ -58,54 +58,54 @@ DRAWINGS: dict[str, Callable[..., None]] = {"length": draw_lengths,
                                             "speed": functools.partial(draw_speeds, column=STEADY)}
 
 
-def with_speeds(shop: Workshop, config: str) -> list[Group]:
+def with_speeds(runner: Runner, config: str) -> list[Group]:
     """The groups of a sweep that have a steady speed, with the capillary number of this speed. @throws UserError if
     there are none"""
-    groups = [group for group in shop.sweep(config) if group[STEADY] is not None]
+    groups = [group for group in runner.sweep(config) if group[STEADY] is not None]
     if not groups:
-        raise UserError(f"no group of {shop.place_of(config)} has a {STEADY} (version 1.0 did not record it, "
+        raise UserError(f"no group of {runner.place_of(config)} has a {STEADY} (version 1.0 did not record it, "
                         "and it needs three runs beyond 5 sigma/v_t); "
                         "give more seeds or a larger max-time, or remove a file of version 1.0")
     return [group | {"capillary_number": group[STEADY] * math.pi / (4 * group["line_tension"])} if group["model"] == "dp" else group for group in groups]
 
 
-def of_quantity(shop: Workshop, config: str, quantity: str) -> list[Group]:
-    return with_speeds(shop, config) if quantity == "speed" else shop.sweep(config)
+def of_quantity(runner: Runner, config: str, quantity: str) -> list[Group]:
+    return with_speeds(runner, config) if quantity == "speed" else runner.sweep(config)
 
 
-def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str,
+def finish(axes: Axes, runner: Runner, config: str, drawn: Sequence[Group], abscissa: str, quantity: str,
            varied: Sequence[str]) -> None:
     """Adds the legend, the labels of the axes, the caption and the notes. @param quantity  a key of DRAWINGS;
     @param varied  columns that the caption leaves out"""
     if quantity == "length":
         style.logarithmic_ordinate(axes)
     style.label(axes, AXES[abscissa], AXES[quantity])
-    style.caption(axes, describe(shop.columns(config), drawn, varied))
-    style.notes(axes, length_notes(drawn, shop.confidence(config), [axes]) if quantity == "length" else SPEED_NOTES)
+    style.caption(axes, describe(runner.columns(config), drawn, varied))
+    style.notes(axes, length_notes(drawn, runner.confidence(config), [axes]) if quantity == "length" else SPEED_NOTES)
     style.legend(axes, drawn if quantity == "length" else ())
 
 
-def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
+def curves(runner: Runner, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
     """Draws one curve for each value of a parameter. @param quantity  a key of DRAWINGS"""
-    groups = of_quantity(shop, config, quantity)
+    groups = of_quantity(runner, config, quantity)
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
     families = by(groups, parameter)
     places = [] if abscissa == "capillary_number" else [group[abscissa] for group in groups]
     for index, (value, members) in enumerate(families):
-        label = said(shop.columns(config)[parameter], value)
+        label = parameter_label(runner.columns(config)[parameter], value)
         shift = style.side_by_side(index, len(families), places) if places else 1
         members = [group for group in members if group[abscissa] is not None]
         DRAWINGS[quantity](axes, [group[abscissa] * shift for group in members], members, index, label)
         data += numbers(members, label)
     style.logarithmic_abscissa(axes, places)
-    finish(axes, shop, config, groups, abscissa, quantity, [parameter, abscissa])
+    finish(axes, runner, config, groups, abscissa, quantity, [parameter, abscissa])
     return Plate(drawing, data)
 
 
 def enter(name: str, caption: str, config: str, cost: str, *, abscissa: str, parameter: str, quantity: str) -> None:
     """Registers a figure of curves() in the catalogue."""
-    figure(name, caption, [config], cost)(lambda shop: curves(shop, config, abscissa, parameter, quantity))
+    figure(name, caption, [config], cost)(lambda runner: curves(runner, config, abscissa, parameter, quantity))
 
 
 enter("6c-saturated", "the same as 6c in saturated arrays, walls without friction", "clogging-saturated", "5 min",
@@ -129,15 +129,15 @@ enter("E", "mean speed against line tension for three near-wall drags", "near-wa
 # Both models against the sag, which in the article is the sinking of the top: it tends to one diameter for very soft
 # droplets, whereas the centroid sinks by at most half a diameter. For a disk, which has no shape, both are the same.
 
-def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
+def sags(runner: Runner, config: str, groups: Sequence[Group]) -> list[float]:
     """The sag delta_s of each group, which is the sinking of the top. The sags come from one sweep of droplets on walls, with the line tension or
     stiffness of each group."""
     is_polygon = groups[0]["model"] == "dp"
     column, key = ("line_tension", "line-tension") if is_polygon else ("wall_stiffness", "wall-stiffness")
-    keys = shop.keys(config)
+    keys = runner.keys(config)
     settings = {name: keys[name] for name in ("model", "preset", "vertices") if name in keys}
     values = sorted({group[column] for group in groups})
-    rows = shop.runs(f"sag-{config}", None, {"obstacle-layout": "wall", **settings, key: values})
+    rows = runner.runs(f"sag-{config}", None, {"obstacle-layout": "wall", **settings, key: values})
     known = dict(zip(values, rows, strict=True))
     return [known[group[column]]["top_sag"] for group in groups]
 
@@ -146,17 +146,17 @@ def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
 Curve = tuple[str, str, Callable[[Sequence[Group]], list[Group]]]
 
 
-def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str) -> Plate:
+def over_sag(runner: Runner, curves: Sequence[Curve], gap: float, quantity: str) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data, drawn = [], []
     for index, (config, label, chosen) in enumerate(curves):
-        groups = [group for group in chosen(of_quantity(shop, config, quantity))
+        groups = [group for group in chosen(of_quantity(runner, config, quantity))
                   if math.isclose(group["obstacle_gap"], gap)]
-        if not groups and shop.rows_folder:
+        if not groups and runner.rows_folder:
             continue
         if not groups:
             raise UserError(f"sweep {config} has no runs with obstacle-gap={gap}; add it to the list")
-        places = sags(shop, config, groups)
+        places = sags(runner, config, groups)
         DRAWINGS[quantity](axes, places, groups, index, label)
         data += numbers(groups, label, top_sag=places)
         drawn += groups
@@ -164,25 +164,26 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
     axes.text(0.25, 0.02, " published\n curves separate", ha="left", color="0.4", fontsize=8,
               transform=axes.get_xaxis_transform())
-    finish(axes, shop, curves[0][0], drawn, "top_sag", quantity, ["line_tension"])
+    finish(axes, runner, curves[0][0], drawn, "top_sag", quantity, ["line_tension"])
     return Plate(drawing, data)
 
 
 figure("7c-saturated", "the same as 7c in saturated arrays, walls without friction", ["clogging-saturated", "clogging-sp-saturated"], "shared with 6c-saturated, 7a-saturated")(
-    lambda shop: over_sag(shop, [("clogging-saturated", "deformable polygon", list),
-                                 ("clogging-sp-saturated", "soft disk", list)], 0.2, "length"))
+    lambda runner: over_sag(runner, [("clogging-saturated", "deformable polygon", list),
+                                     ("clogging-sp-saturated", "soft disk", list)], 0.2, "length"))
 figure("9b", "mean speed against sag, deformable polygon and soft disk, minimum gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")(
-    lambda shop: over_sag(shop, [("speed", "deformable polygon", list), ("speed-sp", "soft disk", list)], 1.1, "speed"))
+    lambda runner: over_sag(runner, [("speed", "deformable polygon", list), ("speed-sp", "soft disk", list)],
+                            1.1, "speed"))
 
 
 @figure("7b", "what the sag is: a soft disk and a polygon on a wall, "
               "before and after gravity sets in", ["channel"], "1 s")
-def sag_picture(shop: Workshop) -> Plate:
+def sag_picture(runner: Runner) -> Plate:
     line_tension, stiffness = 0.3, 1.0
     on_wall = {"obstacle-layout": "wall"}
-    row, = shop.runs("sag-polygon", "channel", {**on_wall, "line-tension": line_tension})
-    polygon, = shop.ways("sag-polygon", [row], 1, 2)
-    disk, = shop.runs("sag-disk", None, {**on_wall, "model": "sp", "wall-stiffness": stiffness})
+    row, = runner.runs("sag-polygon", "channel", {**on_wall, "line-tension": line_tension})
+    polygon, = runner.ways("sag-polygon", [row], 1, 2)
+    disk, = runner.runs("sag-disk", None, {**on_wall, "model": "sp", "wall-stiffness": stiffness})
     disk_sag, polygon_sag = disk["top_sag"], row["top_sag"]
     drawing, panels = style.subplots(1, 2, figsize=(7.2, 4.2), sharey=True)
     wall = polygon.wedges[0, :2]
@@ -218,28 +219,28 @@ def sag_picture(shop: Workshop) -> Plate:
 CLOGS = "clogging-friction"  # With friction, walls hold wrapped droplets on every mesh.
 
 
-def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
+def example(runner: Runner, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
     """Replays one clog of the sweep with its outline. Of the squeezed clogs it takes the stiffest droplet that
     travelled at least half a diameter, if there is one. Of the wrapped clogs it takes the one with median shape,
     preferably among those that only hang over obstacles."""
-    shop.sweep(CLOGS)
-    rows = shop.rows(CLOGS)
+    runner.sweep(CLOGS)
+    rows = runner.rows(CLOGS)
     if "mechanism" not in rows or not rows.mechanism.any():
-        raise UserError(f"{shop.place_of(CLOGS)} does not know how droplets clogged (it is of an earlier version); "
+        raise UserError(f"{runner.place_of(CLOGS)} does not know how droplets clogged (it is of an earlier version); "
                         "remove it and sweep again")
     is_wrapped = mechanism == "wrapped"
     clogs = rows[(rows.status == "clogged") & (rows.mechanism == mechanism)]
     if is_wrapped and clogs.empty:
         clogs = rows[(rows.status == "clogged") & (rows.mechanism == "hybrid")]
     if clogs.empty:
-        raise UserError(f"no {mechanism} clog in {shop.place_of(CLOGS)}; more seeds, or other line tensions")
+        raise UserError(f"no {mechanism} clog in {runner.place_of(CLOGS)}; more seeds, or other line tensions")
     if is_wrapped:
         row = clogs.sort_values(["shape_parameter", "task"]).iloc[len(clogs) // 2]
     else:
         travelled = clogs[clogs.distance >= 0.5]
         row = (clogs if travelled.empty else travelled).sort_values(["line_tension", "task"]).iloc[-1]
-    sweep, record = shop.record(CLOGS, mechanism, row)
-    run, = shop.ways(sweep, [record], 1, max(0.5, row.time / 400))
+    sweep, record = runner.record(CLOGS, mechanism, row)
+    run, = runner.ways(sweep, [record], 1, max(0.5, row.time / 400))
     return run, row
 
 
@@ -272,8 +273,8 @@ def show_clog(axes: Axes, run: trajectory.Trajectory, frame: int, view: Numbers,
     axes.set_xticks([]), axes.set_yticks([])
 
 
-def snapshot(shop: Workshop, mechanism: str) -> Plate:
-    run, row = example(shop, mechanism)
+def snapshot(runner: Runner, mechanism: str) -> Plate:
+    run, row = example(runner, mechanism)
     last = run.polygons[-1:]
     view = view_of(last)
     drawing, axes = style.subplots(figsize=(5.6, 0.3 + 5.6 * view[1] / view[0]))
@@ -284,17 +285,17 @@ def snapshot(shop: Workshop, mechanism: str) -> Plate:
 
 
 figure("6a", "a clog by wrapping, from the sweep of 6c", [CLOGS], "shared with 6c")(
-    lambda shop: snapshot(shop, "wrapped"))
+    lambda runner: snapshot(runner, "wrapped"))
 figure("6b", "a clog by squeezing, from the sweep of 6c", [CLOGS], "shared with 6c")(
-    lambda shop: snapshot(shop, "squeezed"))
+    lambda runner: snapshot(runner, "squeezed"))
 
 
 @figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c",
         [CLOGS], "shared with 6c")
-def two_ways(shop: Workshop) -> Plate:
+def two_ways(runner: Runner) -> Plate:
     kinds = []
     for mechanism in ("wrapped", "squeezed"):
-        run, row = example(shop, mechanism)
+        run, row = example(runner, mechanism)
         final = run.polygons[-1].mean(axis=1)
         # These are the frames of the last one and a half diameters of the path.
         near = np.flatnonzero(np.hypot(*(run.polygons.mean(axis=2) - final).T) > 1.5)
@@ -316,18 +317,18 @@ def two_ways(shop: Workshop) -> Plate:
 
 # Single runs and P(r)
 
-def energies(shop: Workshop) -> dict[float, trajectory.Trajectory]:
+def energies(runner: Runner) -> dict[float, trajectory.Trajectory]:
     """The paths of Fig. C1 by their gap. The droplet clogs in one gap and flows in the other."""
-    rows = shop.runs("energy", "trajectory",
-                     {"seeds": 1, "line-tension": 0.5, "obstacle-gap": [0.3, 1.1], "clog-detection": "threshold"})
-    return {row["obstacle_gap"]: way for row, way in zip(rows, shop.ways("energy", rows, 1))}
+    rows = runner.runs("energy", "trajectory",
+                       {"seeds": 1, "line-tension": 0.5, "obstacle-gap": [0.3, 1.1], "clog-detection": "threshold"})
+    return {row["obstacle_gap"]: way for row, way in zip(rows, runner.ways("energy", rows, 1))}
 
 
 @figure("C1", "kinetic energy of a droplet that clogs and of one that flows", ["trajectory"], "2 s")
-def kinetic_energy(shop: Workshop) -> Plate:
+def kinetic_energy(runner: Runner) -> Plate:
     drawing, axes = style.subplots(figsize=(7.2, 4.8))
     data = []
-    for index, (gap, run) in enumerate(energies(shop).items()):
+    for index, (gap, run) in enumerate(energies(runner).items()):
         energy = np.where(run.table["kinetic_energy_ratio"] > 0, run.table["kinetic_energy_ratio"], math.nan)
         label = rf"$w_\mathrm{{ob}} = {gap}\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
         axes.plot(run.table["time"], energy, color=style.COLOURS[index], linewidth=0.9, label=label)
@@ -365,10 +366,10 @@ def lowest_shown(group: Group, end: float) -> float:
 
 
 @figure("C2", "probability P(r) of not having clogged, with its error band and the exponential law", ["survival"], "10 s")
-def survival(shop: Workshop) -> Plate:
-    group = shop.sweep("survival")[0]
+def survival(runner: Runner) -> Plate:
+    group = runner.sweep("survival")[0]
     if not group["survival"]:
-        raise UserError(f"no run has clogged in {shop.place_of('survival')}; raise max-time or seeds")
+        raise UserError(f"no run has clogged in {runner.place_of('survival')}; raise max-time or seeds")
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     draw_band(axes, group)
     survival_curve.draw(axes, group, style.COLOURS[0], f"estimate from {rounded.counted(group['runs'], 'run')}",
@@ -383,7 +384,7 @@ def survival(shop: Workshop) -> Plate:
     axes.set_xlim(0, 1.02 * end)
     style.label(axes, r"displacement along the flow $r/\sigma$", r"probability of not having clogged $P(r)$")
     axes.legend(frameon=False)
-    style.caption(axes, f"{describe(shop.columns('survival'), [group])}\nWeibull's exponent "
+    style.caption(axes, f"{describe(runner.columns('survival'), [group])}\nWeibull's exponent "
                         f"{group['weibull_shape']:.2f}, 1 if exponential (p = {group['weibull_p_value']:.2f})")
     names = ["distance", "probability", "standard_error", "lower", "upper"]
     return Plate(drawing, [{"distance": 0.0, "probability": 1.0}]
@@ -392,11 +393,11 @@ def survival(shop: Workshop) -> Plate:
                  + [{"clogging_length": length, "clogging_length_lower": lower, "clogging_length_upper": upper}])
 
 
-def displacements(shop: Workshop) -> dict[float, trajectory.Trajectory]:
+def displacements(runner: Runner) -> dict[float, trajectory.Trajectory]:
     """The paths of Fig. D by their line tension."""
-    rows = shop.runs("displacement", "trajectory",
-                     {"seeds": 1, "line-tension": [0.04, 0.1, 0.2, 0.5, 1.0], "obstacle-gap": 1.1, "preset": "elastic"})
-    return {row["line_tension"]: way for row, way in zip(rows, shop.ways("displacement", rows, 2))}
+    rows = runner.runs("displacement", "trajectory", {"seeds": 1, "line-tension": [0.04, 0.1, 0.2, 0.5, 1.0],
+                                                      "obstacle-gap": 1.1, "preset": "elastic"})
+    return {row["line_tension"]: way for row, way in zip(rows, runner.ways("displacement", rows, 2))}
 
 
 def steady_speed(row: np.void) -> float:
@@ -407,11 +408,11 @@ def steady_speed(row: np.void) -> float:
 
 
 @figure("D", "displacement against time for five line tensions, minimum gap 1.1", ["trajectory"], "3 s")
-def displacement(shop: Workshop) -> Plate:
+def displacement(runner: Runner) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
     ends = {}
-    for index, (line_tension, run) in enumerate(displacements(shop).items()):
+    for index, (line_tension, run) in enumerate(displacements(runner).items()):
         speed = steady_speed(run.row)
         label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
             ", clogged" if run.word("status") == "clogged" else "")

@@ -12,7 +12,7 @@ from .. import style
 from ..collisions import collision
 from ..labels import interface_of
 from .plate import Plate, figure
-from .workshop import Workshop
+from .runner import Runner
 
 OFFSETS = (0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3)  # of the path from the obstacle's centre [sigma]
 PUBLISHED_SLOPE = 4 / 3
@@ -26,13 +26,13 @@ def slope_of(symmetries: Sequence[float], tensions: Sequence[float]) -> tuple[fl
 
 @figure("S", "largest line tension at which droplets break up on one obstacle, against the symmetry of the collision",
         [], "2 min")
-def break_up_by_symmetry(shop: Workshop) -> Plate:
+def break_up_by_symmetry(runner: Runner) -> Plate:
     drawing, axes = style.subplots(figsize=(6.4, 4.8))
-    folder = shop.folder / "runs"
+    folder = runner.folder / "runs"
     folder.mkdir(parents=True, exist_ok=True)
     data: list[dict[str, Any]] = []
     for index, preset in enumerate(("robust", "elastic")):
-        collisions = collision.Collisions(shop.programs / "clogsweep", folder, {"preset": preset})
+        collisions = collision.Collisions(runner.programs / "clogsweep", folder, {"preset": preset})
         found = [(offset, *collisions.threshold(offset)) for offset in OFFSETS]
         known = [(collision.symmetry(offset), math.sqrt(low * high)) for offset, low, high in found if low and high]
         slope, error = slope_of(*zip(*known))

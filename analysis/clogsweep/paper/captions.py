@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Sequence
 
-from ..labels import interface_of, runs_a_point, said
+from ..labels import interface_of, runs_a_point, parameter_label
 from ..tools.hints import Column, Group
 
 # A caption names these parameters if all points share one value other than 0.
@@ -22,7 +22,7 @@ def arrays_of(groups: Sequence[Group]) -> str:
 def describe(columns: dict[str, Column], groups: Sequence[Group], without: Collection[str] = ()) -> str:
     """The shared parameters as phrases separated by commas. Parameters that only polygons have are attributed to the
     polygons.
-    @param columns  see Workshop.columns()
+    @param columns  see Runner.columns()
     @param without  parameters that the figure names elsewhere"""
     polygons = [group for group in groups if group["model"] == "dp"]
 
@@ -33,7 +33,7 @@ def describe(columns: dict[str, Column], groups: Sequence[Group], without: Colle
     if polygons and "vertices" not in without:
         meshes = sorted({group["vertices"] for group in polygons})
         words.append(f"{' or '.join(map(str, meshes))} vertices")
-    words += [said(columns[name], groups[0][name]) for name in NAMED if common(name) and groups[0][name]]
+    words += [parameter_label(columns[name], groups[0][name]) for name in NAMED if common(name) and groups[0][name]]
     if "obstacle_density" not in without:
         words.append(arrays_of(groups))
     if common("terminal_speed"):

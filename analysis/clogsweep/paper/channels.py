@@ -14,25 +14,25 @@ from ..labels import AXES, interface_of
 from ..reading.trajectory import Trajectory
 from ..tools.errors import UserError
 from .plate import Plate, figure
-from .workshop import Workshop, measured
+from .runner import Runner, measured
 
 SMOOTH = 512  # With at least this many vertices, a passage through w = 0.4 shows no ripples.
 
 
-def passages(shop: Workshop, name: str, **keys: object) -> list[np.void]:
-    """The rows of a sweep of channels. @param keys  keys of Workshop.runs(), with _ instead of -"""
-    start, end = (-10, 3) if shop.size == "full" else (-2, 2)
-    return shop.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end}
-                     | {key.replace("_", "-"): value for key, value in keys.items()})
+def passages(runner: Runner, name: str, **keys: object) -> list[np.void]:
+    """The rows of a sweep of channels. @param keys  keys of Runner.runs(), with _ instead of -"""
+    start, end = (-10, 3) if runner.size == "full" else (-2, 2)
+    return runner.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end}
+                       | {key.replace("_", "-"): value for key, value in keys.items()})
 
 
-def profiles(shop: Workshop, name: str, outlines: bool = False, **keys: object) -> list[Trajectory]:
+def profiles(runner: Runner, name: str, outlines: bool = False, **keys: object) -> list[Trajectory]:
     """Replays passages. Each replay has h, v and A along the path, and outlines if they are requested."""
-    rows = passages(shop, name, **keys)
+    rows = passages(runner, name, **keys)
     # Between two frames, a droplet at terminal speed moves by a fiftieth of a diameter. Between two samples the droplet
     # moves by a fifth of this distance.
     frame = 0.02 / rows[0]["terminal_speed"]
-    return shop.ways(name, rows, frame / 5, frame if outlines else None)
+    return runner.ways(name, rows, frame / 5, frame if outlines else None)
 
 
 def parameters(run: Trajectory, orifice: float) -> str:
@@ -92,20 +92,20 @@ def with_contact(contact: str) -> tuple[str, dict[str, object]]:
     return ("", {}) if contact == "surface" else (f"-{contact}", {"contact_range": contact})
 
 
-def narrow(shop: Workshop, contact: str = "surface") -> Trajectory:
+def narrow(runner: Runner, contact: str = "surface") -> Trajectory:
     """The passage in Figs. 1 and 2."""
     ending, keys = with_contact(contact)
-    return profiles(shop, f"channel-0.4{ending}", outlines=contact == "surface", orifice=0.4, line_tension=0.16,
+    return profiles(runner, f"channel-0.4{ending}", outlines=contact == "surface", orifice=0.4, line_tension=0.16,
                     near_wall_drag=0.064, terminal_speed=0.08, **keys)[0]
 
 
 @figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory",
         ["channel", "trajectory"], "1 s")
-def geometry(shop: Workshop) -> Plate:
-    channel = narrow(shop)
-    released, = shop.runs("geometry", "trajectory",
-                          {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
-    array, = shop.ways("geometry", [released], 1, 4)
+def geometry(runner: Runner) -> Plate:
+    channel = narrow(runner)
+    released, = runner.runs("geometry", "trajectory",
+                            {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
+    array, = runner.ways("geometry", [released], 1, 4)
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 4.4), width_ratios=[1, 1.5])
     middle = channel.middle
     frame = channel.frame_at("h", -0.75)
@@ -137,8 +137,8 @@ def geometry(shop: Workshop) -> Plate:
 
 @figure("2", "a droplet squeezes through an orifice of 0.4 diameters: "
              "outlines, shape parameter, speed", ["channel"], "1 s")
-def squeezing(shop: Workshop) -> Plate:
-    run = narrow(shop)
+def squeezing(runner: Runner) -> Plate:
+    run = narrow(runner)
     drawing = style.new_figure(figsize=(9.6, 6.2), layout="constrained")
     top, bottom = drawing.subfigures(2, 1, height_ratios=[1, 2.4])
     middle = run.middle
@@ -153,9 +153,9 @@ def squeezing(shop: Workshop) -> Plate:
     for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
         axes = panels[place]
         draw_profile(axes, run, column, 1, "simulation" + ending(run))
-        draw_measured(shop.profiles, axes, "A" if place == 0 else "v")
+        draw_measured(runner.profiles, axes, "A" if place == 0 else "v")
         finish(axes, ordinate)
-        if shop.profiles:
+        if runner.profiles:
             axes.legend(frameon=False)
     ripples = "" if run.row["vertices"] >= SMOOTH else f"; ripples of the speed: one for each vertex that passes the tips, none with {SMOOTH}"
     drawing.suptitle(f"{parameters(run, 0.4)}\nflow to the right, walls grey{ripples}", fontsize=9, color="0.25")
@@ -166,20 +166,20 @@ def squeezing(shop: Workshop) -> Plate:
 CALIBRATED = {0.9: (1.7, 0.21, 0.028), 0.7: (1.08, 0.07, 0.032)}
 
 
-def passage(shop: Workshop, orifice: float, contact: str = "surface") -> Trajectory:
+def passage(runner: Runner, orifice: float, contact: str = "surface") -> Trajectory:
     """A passage in Fig. 3. @param orifice  0.9 or 0.7"""
     line_tension, drag, speed = CALIBRATED[orifice]
     ending, keys = with_contact(contact)
-    return profiles(shop, f"channel-{orifice}{ending}", outlines=contact == "surface", orifice=orifice,
+    return profiles(runner, f"channel-{orifice}{ending}", outlines=contact == "surface", orifice=orifice,
                     line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed, **keys)[0]
 
 
 @figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
-def two_orifices(shop: Workshop) -> Plate:
+def two_orifices(runner: Runner) -> Plate:
     drawing, panels = style.subplots(2, 2, figsize=(9.0, 6.8))
     data = []
     for line, orifice in enumerate(CALIBRATED):
-        run = passage(shop, orifice)
+        run = passage(runner, orifice)
         for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
             axes = panels[line][place]
             draw_profile(axes, run, column, 1, "simulation" + ending(run))
@@ -195,7 +195,7 @@ def two_orifices(shop: Workshop) -> Plate:
         inset.set_xticks([]), inset.set_yticks([])
         inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
         data += [*profile_rows(run, f"w={orifice}"), extremes(run, f"w={orifice}")]
-    for pair, path in zip(panels, shop.profiles):
+    for pair, path in zip(panels, runner.profiles):
         for axes, column in zip(pair, "Av"):
             draw_measured([path], axes, column)
     return Plate(drawing, data)
@@ -213,51 +213,51 @@ def terminal_speed(tilt: float) -> float:
     return round(0.032 * math.sqrt(math.sin(math.radians(tilt)) / math.sin(math.radians(5))), 4)
 
 
-def overshooting(shop: Workshop, orifice: float) -> dict[float, Trajectory]:
+def overshooting(runner: Runner, orifice: float) -> dict[float, Trajectory]:
     """The passages in Fig. 4 by line tension. @param orifice  0.7 or 0.8"""
-    return {line_tension: profiles(shop, f"overshoot-{orifice}-{line_tension}", orifice=orifice,
+    return {line_tension: profiles(runner, f"overshoot-{orifice}-{line_tension}", orifice=orifice,
                                    line_tension=line_tension, near_wall_drag=OVERSHOOTS[orifice],
                                    terminal_speed=terminal_speed(tilt))[0] for line_tension, tilt in TILTS.items()}
 
 
 @figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "3 s")
-def overshoot(shop: Workshop) -> Plate:
+def overshoot(runner: Runner) -> Plate:
     drawing, panels = style.subplots(1, 2, figsize=(9.6, 4.6))
     data = []
     for axes, (orifice, drag), origin in zip(panels, OVERSHOOTS.items(),
                                              ("parameters of the article", "not published, for comparison")):
-        for index, (line_tension, run) in enumerate(overshooting(shop, orifice).items()):
+        for index, (line_tension, run) in enumerate(overshooting(runner, orifice).items()):
             draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
         style.caption(axes, rf"{origin}: $w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$" "\n"
                       rf"$V_t = {', '.join(f'{terminal_speed(tilt):g}' for tilt in TILTS.values())}$, "
                       rf"$N_v = {run.row['vertices']}$, {interface_of(run.word('preset'))}")
-    draw_measured(shop.profiles, panels[0], "v")
+    draw_measured(runner.profiles, panels[0], "v")
     for axes in panels:
         axes.legend(frameon=False, fontsize=8, loc="lower right")
     return Plate(drawing, data)
 
 
-def drag_of_walls(shop: Workshop) -> tuple[list[float], list[np.void], list[float], dict[str, Any]]:
+def drag_of_walls(runner: Runner) -> tuple[list[float], list[np.void], list[float], dict[str, Any]]:
     """Droplets midway between two walls, as in Fig. A1. @return distances from a wall, rows, speeds [v_t], and the fit
     of clogfit drag"""
     distances = [0.03, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
-    rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0,
+    rows = passages(runner, "walls", start=-1.5, end=1.5, wedge_angle=0,
                     orifice=[1 + 2 * distance for distance in distances], line_tension=1, near_wall_drag=0.07,
                     terminal_speed=0.03)
     speeds = [row["mean_speed"] / row["terminal_speed"] for row in rows]
     if not np.isfinite(speeds).all():
-        raise UserError(f"droplets of {shop.sweep_file('walls')} went too short a way for a mean speed; "
+        raise UserError(f"droplets of {runner.sweep_file('walls')} went too short a way for a mean speed; "
                         "raise max-time, e.g. --set channel:max-time=3000")
-    table = shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds))
-    return distances, rows, speeds, shop.fit("drag", table, "--format", "json")
+    table = runner.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds))
+    return distances, rows, speeds, runner.fit("drag", table, "--format", "json")
 
 
 @figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent",
         ["channel"], "3 s")
-def near_wall_drag(shop: Workshop) -> Plate:
-    distances, rows, speeds, fit = drag_of_walls(shop)
+def near_wall_drag(runner: Runner) -> Plate:
+    distances, rows, speeds, fit = drag_of_walls(runner)
     data = [{"distance": distance, "speed_ratio": speed, "ratio": speed / (1 - speed)}
             for distance, speed in zip(distances, speeds)]
     row = rows[0]
@@ -286,21 +286,22 @@ def near_wall_drag(shop: Workshop) -> Plate:
     return Plate(drawing, data)
 
 
-def meshes(shop: Workshop) -> dict[int, Trajectory]:
+def meshes(runner: Runner) -> dict[int, Trajectory]:
     """The passages in Fig. B1 by their number of vertices. The number of vertices is at most a multiple of the number
     in the config, because the finest run takes most of the time."""
-    line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
-    counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
-    return dict(zip(counts, profiles(shop, "vertices", orifice=0.7, line_tension=line_tension,
+    line_tension, most = (1.08, 4) if runner.size == "full" else (0.83, 2)
+    largest = most * int(runner.keys("channel")["vertices"])
+    counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= largest]
+    return dict(zip(counts, profiles(runner, "vertices", orifice=0.7, line_tension=line_tension,
                                      near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)))
 
 
 @figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "4 s")
-def vertices(shop: Workshop) -> Plate:
+def vertices(runner: Runner) -> Plate:
     drawing, axes = style.subplots(figsize=(7.2, 5.0))
     inset = axes.inset_axes([0.72, 0.1, 0.25, 0.36])
     data = []
-    for index, (count, run) in enumerate(meshes(shop).items()):
+    for index, (count, run) in enumerate(meshes(runner).items()):
         for panel in (axes, inset):
             draw_profile(panel, run, "speed_ratio", index,
                          rf"$N_v = {count}$, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$"
@@ -320,35 +321,35 @@ def vertices(shop: Workshop) -> Plate:
 SPRINGS = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]  # perimeter stiffness divided by line tension, of figure B2
 
 
-def spring_deviations(shop: Workshop, preset: str) -> tuple[Trajectory, dict[float, dict[str, float]]]:
+def spring_deviations(runner: Runner, preset: str) -> tuple[Trajectory, dict[float, dict[str, float]]]:
     """The passages of Fig. B2. @return the last passage, and the deviations `delta_v` and `delta_a` by the ratio of
     SPRINGS: from the measured profile, or from the profile of the softest springs if there is none"""
-    runs = profiles(shop, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21, terminal_speed=0.028,
-                    preset=preset, perimeter_spring="rest", perimeter_stiffness_ratio=SPRINGS)
+    runs = profiles(runner, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21,
+                    terminal_speed=0.028, preset=preset, perimeter_spring="rest", perimeter_stiffness_ratio=SPRINGS)
     files = []
     for ratio, run in zip(SPRINGS, runs):
         # The compared passages are longer than the reference, so that each of its frames lies within them.
-        frames = run.table[np.abs(run.table["h"]) < (1.2 if run is runs[0] and not shop.profiles else np.inf)]
-        files.append(shop.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
-                                zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))
-    reference, compared = (shop.profiles[0], files) if shop.profiles else (files[0], files[1:])
-    places = SPRINGS if shop.profiles else SPRINGS[1:]
-    return runs[-1], dict(zip(places, shop.fit("deviation", reference, *compared)["deviations"], strict=True))
+        frames = run.table[np.abs(run.table["h"]) < (1.2 if run is runs[0] and not runner.profiles else np.inf)]
+        files.append(runner.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
+                                  zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))
+    reference, compared = (runner.profiles[0], files) if runner.profiles else (files[0], files[1:])
+    places = SPRINGS if runner.profiles else SPRINGS[1:]
+    return runs[-1], dict(zip(places, runner.fit("deviation", reference, *compared)["deviations"], strict=True))
 
 
 @figure("B2", "deviation of the speed profile as the perimeter's springs stiffen", ["channel"], "15 s")
-def perimeter_springs(shop: Workshop) -> Plate:
+def perimeter_springs(runner: Runner) -> Plate:
     drawing, axes = style.subplots(figsize=(6.4, 4.8))
     data = []
     for index, preset in enumerate(["elastic", "literal"]):
-        run, deviations = spring_deviations(shop, preset)
+        run, deviations = spring_deviations(runner, preset)
         places, found = list(deviations), [entry["delta_v"] for entry in deviations.values()]
         axes.plot(places, found, **style.curve_style(index), markersize=5, linewidth=1, label=interface_of(preset))
         data += [{"preset": preset, "stiffness_ratio": x, "delta_v": y} for x, y in zip(places, found)]
     style.logarithmic_abscissa(axes, places)
     axes.set_ylim(bottom=0)
-    style.label(axes, r"perimeter stiffness divided by line tension $K_l/\Gamma$",
-                r"$\Delta_v$ from the measured profile" if shop.profiles else r"$\Delta_v$ from the profile at $K_l/\Gamma = 10^{-4}$")
+    reference = "the measured profile" if runner.profiles else r"the profile at $K_l/\Gamma = 10^{-4}$"
+    style.label(axes, r"perimeter stiffness divided by line tension $K_l/\Gamma$", rf"$\Delta_v$ from {reference}")
     axes.legend(frameon=False)
     style.caption(axes, parameters(run, 0.9).rpartition(", ")[0] + ", springs to the rest length")
     return Plate(drawing, data)

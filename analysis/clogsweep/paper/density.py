@@ -15,7 +15,7 @@ from ..tools.hints import Group
 from .arrays import numbers
 from .captions import describe
 from .plate import Plate, figure
-from .workshop import Workshop
+from .runner import Runner
 
 # The length and its error [sigma], at Gamma = 1.09 and a minimum gap of 0.2 sigma.
 PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0
@@ -73,9 +73,9 @@ def fitted(groups: Sequence[Group]) -> DensityFit:
 @figure("density",
         "clogging length of stiff droplets against the density of obstacles, and the density of the published arrays",
         CONFIGS, "5 min")
-def density_of_the_published_arrays(shop: Workshop) -> Plate:
+def density_of_the_published_arrays(runner: Runner) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
-    families = {label: shop.sweep(config) for config, label in CONFIGS.items()}
+    families = {label: runner.sweep(config) for config, label in CONFIGS.items()}
     everyone = [group for groups in families.values() for group in groups]
     places = sorted({group["obstacle_density"] for group in everyone})
     data = []
@@ -102,9 +102,9 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
     style.grid(axes)
     axes.set_xlabel(r"obstacles per area $\rho_\mathrm{ob}\,\sigma^2$")
     axes.set_ylabel(AXES["length"])
-    style.caption(axes, describe(shop.columns("density-robust"), everyone, ["obstacle_density"]))
+    style.caption(axes, describe(runner.columns("density-robust"), everyone, ["obstacle_density"]))
     style.notes(axes, ["legend: density at which the fitted curve has the published length, with its 95 % interval",
-                       *length_notes(everyone, shop.confidence("density-robust"), [axes])])
+                       *length_notes(everyone, runner.confidence("density-robust"), [axes])])
     style.legend(axes, everyone)
     return Plate(drawing, data)
 

@@ -15,14 +15,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from .. import style
-from ..labels import AXES, interface_of, said
+from ..labels import AXES, interface_of, parameter_label
 from ..tools.errors import NotThere
 from ..tools.hints import Group
 from . import panels
 from .arrays import HOLDS, by, numbers, of_each, over_sag
 from .captions import describe
 from .plate import Plate, figure
-from .workshop import Workshop
+from .runner import Runner
 
 # The only clogging length that was published as a number, with its error (appendix C). The density of the arrays was
 # not published; figure `density` finds it from the length.
@@ -67,16 +67,16 @@ def draw_published(axes: Axes) -> None:
                   zorder=5, **STAR)
 
 
-def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
+def families(runner: Runner, chosen: Sequence[Family], finer: bool) -> Plate:
     """Draws a panel for each family, with a curve for each gap. @param finer  also draws the sweep CONFIG-mesh, which
     has a second mesh"""
-    kinds = [(family, family.of(shop.sweep(family.config)),
-              family.of(shop.sweep(f"{family.config}-mesh")) if finer and shop.has(f"{family.config}-mesh") else [])
-             for family in chosen if shop.has(family.config)]
+    kinds = [(family, family.of(runner.sweep(family.config)),
+              family.of(runner.sweep(f"{family.config}-mesh")) if finer and runner.has(f"{family.config}-mesh") else [])
+             for family in chosen if runner.has(family.config)]
     kinds = [(family, coarse, fine) for family, coarse, fine in kinds if coarse]
     if not kinds:
         configs = ", ".join(family.config for family in chosen)
-        raise NotThere(f"{shop.rows_folder} holds no finished group of {configs}; run it with --size full")
+        raise NotThere(f"{runner.rows_folder} holds no finished group of {configs}; run it with --size full")
     every = [group for _, coarse, fine in kinds for group in [*coarse, *fine]]
     gaps = sorted({group["obstacle_gap"] for group in every})
     found: list[panels.Panel] = []
@@ -87,7 +87,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
         drawn: list[tuple[list[Group], dict[str, Any]]] = [(coarse, {}), (fine, {"linestyle": FINER, "size": 3.5})]
         for groups, options in drawn:
             for gap, curve in by(groups, "obstacle_gap"):
-                label = "_finer" if options else said(shop.columns(family.config)["obstacle_gap"], gap)
+                label = "_finer" if options else parameter_label(runner.columns(family.config)["obstacle_gap"], gap)
                 # A line is interrupted where this mesh lacks line tensions of the other mesh, because a line could hide
                 # a peak there.
                 places = [tensions.index(group["line_tension"]) for group in curve]
@@ -102,7 +102,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
                                                linestyle=FINER), rf"{meshes[-1]} vertices, at fewer $\Gamma$ (else {meshes[0]})")] \
         if any(fine for _, _, fine in kinds) else []
     marks.append((Line2D([], [], **STAR), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
-    return Plate(panels.draw(shop, kinds[0][0].config, found, ["preset"], marks=marks, on_each=draw_published), data)
+    return Plate(panels.draw(runner, kinds[0][0].config, found, ["preset"], marks=marks, on_each=draw_published), data)
 
 
 FILLINGS = [Family("clogging-elastic", "the same density in every array"),
@@ -112,14 +112,15 @@ figure("6c", "clogging length against line tension for four values of the minimu
              "what holds droplets, on two meshes",
        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh",
         "clogging-elastic", "clogging-elastic-mesh"], "25 min")(
-    lambda shop: families(shop, FAMILIES, True))
+    lambda runner: families(runner, FAMILIES, True))
 figure("6c-filling", "6c without friction at the same density for every gap, "
                      "and at the same share of the saturated density",
-       ["clogging-elastic", "clogging-filling"], "5 min, shared with 6c")(lambda shop: families(shop, FILLINGS, False))
+       ["clogging-elastic", "clogging-filling"], "5 min, shared with 6c")(
+    lambda runner: families(runner, FILLINGS, False))
 figure("7c", "clogging length against sag, deformable polygons and soft disk, minimum gap 0.2, dilute arrays",
        ["clogging-robust", "clogging-friction", "clogging-elastic", "clogging-sp"], "shared with 6c, 7a")(
-    lambda shop: over_sag(shop, [*((family.config, family.label, family.of)
-                                   for family in FAMILIES if shop.has(family.config)),
+    lambda runner: over_sag(runner, [*((family.config, family.label, family.of)
+                                       for family in FAMILIES if runner.has(family.config)),
                                  ("clogging-sp", "soft disk", list)], 0.2, "length"))
 
 
@@ -170,8 +171,8 @@ def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
 
 @figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction",
         ["map-robust", "map-friction"], "5 min")
-def lengths_on_a_map(shop: Workshop) -> Plate:
-    kinds = [(family, shop.sweep(family.config)) for family in MAPS]
+def lengths_on_a_map(runner: Runner) -> Plate:
+    kinds = [(family, runner.sweep(family.config)) for family in MAPS]
     every = [group for _, groups in kinds for group in groups]
     gaps = sorted({group["obstacle_gap"] for group in every})
     tensions = sorted({group["line_tension"] for group in every})
@@ -184,7 +185,8 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
         for (gap, members), axes in zip(by(groups, "obstacle_gap"), row):
             for group in members:
                 draw_cell(axes, tensions.index(group["line_tension"]), lines.index(density_key(group)), group, norm)
-            axes.set_title(f"{family.label}\n{said(shop.columns(family.config)['obstacle_gap'], gap)}", fontsize=9)
+            gap_label = parameter_label(runner.columns(family.config)["obstacle_gap"], gap)
+            axes.set_title(f"{family.label}\n{gap_label}", fontsize=9)
             data += numbers(members, family.config,
                             **of_each(members, "friction", "obstacle_filling", "weibull_shape",
                                       "weibull_p_value", *HOLDS))
@@ -204,7 +206,7 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
                   place_of(numbered, PUBLISHED["obstacle_density"]) + 0.28, marker="*", color="black",
                   markerfacecolor="gold", markersize=11)
     drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8, extend="min")
-    drawing.suptitle(describe(shop.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8,
+    drawing.suptitle(describe(runner.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8,
                      color="0.25")
     style.notes_of_panels(drawing, [
         f"frames where {ENOUGH_CLOGS} runs or more clogged: solid if $P(r)$ is exponential "

@@ -10,7 +10,7 @@ from ..tools import outputs
 from ..tools.texts import printable
 from . import arrays, breaking, channels, density, dilute, hanging  # noqa: F401, these modules fill the catalogue
 from .plate import CATALOGUE, Entry, Plate
-from .workshop import Workshop
+from .runner import Runner
 
 ORDER = [
     "1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-filling", "6c-saturated", "7a",
@@ -25,24 +25,24 @@ def print_list() -> None:
         print(f"{name:12} {entry.cost:24} {', '.join(entry.configs) or '-':24} {entry.caption}")
 
 
-def output_of(name: str, shop: Workshop) -> pathlib.Path:
+def output_of(name: str, runner: Runner) -> pathlib.Path:
     """The path of a figure without its ending."""
-    return shop.folder / f"figure-{name}"
+    return runner.folder / f"figure-{name}"
 
 
-def refuse_unwritable(name: str, shop: Workshop) -> None:
+def refuse_unwritable(name: str, runner: Runner) -> None:
     """Checks that write() can write its four files, before minutes are spent on a computation."""
-    output = output_of(name, shop)
-    outputs.refuse_unwritable_picture(output, *shop.profiles)
+    output = output_of(name, runner)
+    outputs.refuse_unwritable_picture(output, *runner.profiles)
     for ending in ("csv", "txt"):
-        outputs.refuse_unwritable(pathlib.Path(f"{output}.{ending}"), "text", *shop.profiles)
+        outputs.refuse_unwritable(pathlib.Path(f"{output}.{ending}"), "text", *runner.profiles)
 
 
-def write(plate: Plate, entry: Entry, shop: Workshop, command: str) -> None:
-    output = output_of(entry.name, shop)
-    sources = shop.take_sources()
-    version = programs.run_program(shop.programs / "clogsweep", "--version").splitlines()[0]
-    about = "\n".join([f"Figure {entry.name}, {shop.size} size: {entry.caption}", f"drawn by {command}",
+def write(plate: Plate, entry: Entry, runner: Runner, command: str) -> None:
+    output = output_of(entry.name, runner)
+    sources = runner.take_sources()
+    version = programs.run_program(runner.programs / "clogsweep", "--version").splitlines()[0]
+    about = "\n".join([f"Figure {entry.name}, {runner.size} size: {entry.caption}", f"drawn by {command}",
                        f"{version}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%dT%H:%M:%SZ}", "from", *sources]) + "\n"
     style.save(plate.figure, output, {"Title": f"Figure {entry.name}: {entry.caption}",
                                       "Description": about, "Software": "clogsweep"})

@@ -133,7 +133,7 @@ def add(name: str, sweeps: Iterable[pathlib.Path], clogsweep_folder: pathlib.Pat
     sources = list(known.fit["sources"])
     answer: dict[str, Any] = {}
     for sweep in sweeps:
-        answer = fits.told(clogsweep_folder / "clogfit", sweep)
+        answer = fits.run_clogfit(clogsweep_folder / "clogfit", sweep)
         with stored.opened(sweep, stored.SWEEP, clogsweep_folder) as file:
             about = stored.attributes(file)
         planned = sum(len(lists.numbers(text)) for text in stored.values(about["config"], "seeds"))

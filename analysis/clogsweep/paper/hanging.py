@@ -9,13 +9,13 @@ from matplotlib.patches import Circle
 
 from .. import style
 from ..drawing import surroundings
-from ..labels import interface_of, said
+from ..labels import interface_of, parameter_label
 from ..reading.trajectory import Trajectory
 from ..tools.hints import Group, Numbers
 from . import panels
 from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure
-from .workshop import Workshop
+from .runner import Runner
 
 # The post: x, y and diameter [sigma]. A droplet falls onto it from 7 sigma upstream. The path of the droplet is 0.08
 # sigma beside the centre of the post.
@@ -24,7 +24,7 @@ POST = (47.0, 5.08, 0.3)
 NEAR = 0.12
 
 
-def by_mesh(shop: Workshop, config: str, kinds: Sequence[tuple[str, Sequence[Group]]], without: Sequence[str]) -> Plate:
+def by_mesh(runner: Runner, config: str, kinds: Sequence[tuple[str, Sequence[Group]]], without: Sequence[str]) -> Plate:
     """Draws a panel for each kind, with a curve for each mesh.
     @param kinds  for each panel, words that distinguish it, and its groups
     @param config, without  see panels.draw()"""
@@ -33,37 +33,38 @@ def by_mesh(shop: Workshop, config: str, kinds: Sequence[tuple[str, Sequence[Gro
                                           for vertices, curve in by(groups, "vertices")]) for title, groups in kinds]
     data = [row for title, groups in kinds
             for row in numbers(groups, title.replace("\n", ", "), **of_each(groups, "vertices", "friction", *HOLDS))]
-    return Plate(panels.draw(shop, config, found, ["vertices", *without]), data)
+    return Plate(panels.draw(runner, config, found, ["vertices", *without]), data)
 
 
 @figure("W1", "how the clogging length depends on the mesh: line tension, numbers of vertices, interfaces",
         ["hanging-robust", "hanging-elastic"], "5 min")
-def lengths_by_mesh(shop: Workshop) -> Plate:
-    sweeps = {config: by(shop.sweep(config), "obstacle_gap") for config in ("hanging-robust", "hanging-elastic")}
-    kinds = [(f"{interface_of(groups[0]['preset'])}\n{said(shop.columns(config)['obstacle_gap'], gap)}", groups)
+def lengths_by_mesh(runner: Runner) -> Plate:
+    sweeps = {config: by(runner.sweep(config), "obstacle_gap") for config in ("hanging-robust", "hanging-elastic")}
+    kinds = [(f"{interface_of(groups[0]['preset'])}\n"
+              f"{parameter_label(runner.columns(config)['obstacle_gap'], gap)}", groups)
              for of_gap in zip(*([(config, *one) for one in found] for config, found in sweeps.items()))
              for config, gap, groups in of_gap]
-    return by_mesh(shop, "hanging-robust", kinds, ["preset", "obstacle_gap"])
+    return by_mesh(runner, "hanging-robust", kinds, ["preset", "obstacle_gap"])
 
 
 @figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices",
         ["hanging-friction"], "5 min")
-def lengths_by_friction(shop: Workshop) -> Plate:
+def lengths_by_friction(runner: Runner) -> Plate:
     config = "hanging-friction"
-    kinds = [(f"wall friction {said(shop.columns(config)['friction'], friction)}", groups)
-             for friction, groups in by(shop.sweep(config), "friction")]
-    return by_mesh(shop, config, kinds, [])
+    kinds = [(f"wall friction {parameter_label(runner.columns(config)['friction'], friction)}", groups)
+             for friction, groups in by(runner.sweep(config), "friction")]
+    return by_mesh(runner, config, kinds, [])
 
 
-def over_a_post(shop: Workshop, films: str) -> Trajectory:
+def over_a_post(runner: Runner, films: str) -> Trajectory:
     """Replays a droplet that hangs over a post. The lobes on the two sides have unequal weights. @param films  value of
     film-friction"""
-    obstacles = shop.table("post", ["x", "y", "diameter"], [POST])
-    row, = shop.runs(f"post-{films}", None, {
+    obstacles = runner.table("post", ["x", "y", "diameter"], [POST])
+    row, = runner.runs(f"post-{films}", None, {
         "obstacles": obstacles, "box": 10, "boxes": 8, "preset": "elastic", "line-tension": 0.05,
         "friction": 0.3, "film-friction": films,
         "vertices": 512, "max-time": 2600, "seeds": 1})
-    return shop.ways(f"post-{films}", [row], 20, 20)[0]
+    return runner.ways(f"post-{films}", [row], 20, 20)[0]
 
 
 def tensions(vertices: Numbers, row: np.void) -> Numbers:
@@ -89,8 +90,8 @@ def interfaces(vertices: Numbers) -> Iterator[Numbers]:
 
 @figure("W3", "a droplet over a post: the tensions of its two interfaces, "
               "with friction on both of them and on the lower one alone", [], "1 min")
-def tensions_over_a_post(shop: Workshop) -> Plate:
-    held, slides = over_a_post(shop, "on"), over_a_post(shop, "off")
+def tensions_over_a_post(runner: Runner) -> Plate:
+    held, slides = over_a_post(runner, "on"), over_a_post(runner, "off")
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 3.8), width_ratios=[1.3, 1])
     last = held.polygons[-1][:, ::2]  # Without the middles of the edges.
     # The moment at which the other droplet, which slides, passes the position at which this droplet is held.

@@ -13,7 +13,7 @@ from ..drawing.lengths import draw_lengths, length_notes
 from ..labels import AXES
 from ..tools.hints import Group
 from .captions import describe
-from .workshop import Workshop
+from .runner import Runner
 
 # For each curve: its groups, the number of its colour, its name in the legend, and options of draw_lengths().
 Curve = tuple[Sequence[Group], int, str, dict[str, Any]]
@@ -34,7 +34,7 @@ def explain_gap(axes: Axes, tensions: Sequence[float], groups: Sequence[Group]) 
               ha="center", va="center", fontsize=8, color="0.35", transform=axes.get_xaxis_transform())
 
 
-def draw(shop: Workshop, config: str, panels: Sequence[Panel], without: Collection[str], across: int = 2,
+def draw(runner: Runner, config: str, panels: Sequence[Panel], without: Collection[str], across: int = 2,
          marks: Sequence[tuple[Artist, str]] = (), on_each: Callable[[Axes], None] = lambda axes: None) -> Figure:
     """Draws the panels.
     @param config  a sweep, for its columns and its confidence
@@ -70,6 +70,6 @@ def draw(shop: Workshop, config: str, panels: Sequence[Panel], without: Collecti
     handles = [(handle, label) for label, handle in entries.items()] + style.mechanism_entries(every) + list(marks)
     below.legend(*zip(*handles), loc="center", ncols=4, frameon=False, fontsize=8, handlelength=3.5)
     fits = style.fitting(drawing, 8, 0.9 * drawing.bbox.width)
-    drawing.suptitle(style.in_lines(describe(shop.columns(config), every, without), fits), fontsize=8, color="0.25")
-    style.notes_of_panels(drawing, length_notes(every, shop.confidence(config), all_axes.flat))
+    drawing.suptitle(style.in_lines(describe(runner.columns(config), every, without), fits), fontsize=8, color="0.25")
+    style.notes_of_panels(drawing, length_notes(every, runner.confidence(config), all_axes.flat))
     return drawing

@@ -8,7 +8,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from .workshop import Workshop
+from .runner import Runner
 
 CATALOGUE: dict[str, Entry] = {}
 
@@ -21,7 +21,7 @@ class Plate:
     data: list[dict[str, Any]]
 
 
-Drawing = Callable[[Workshop], Plate]
+Drawing = Callable[[Runner], Plate]
 
 
 @dataclasses.dataclass(frozen=True)

@@ -11,8 +11,8 @@ from ..tools.hints import AnyPath, Column, Group
 from . import programs, stored
 
 
-def told(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
-    """The answer of clogfit for these sweeps and options. @throws ProgramFailed  with clogfit's reason"""
+def run_clogfit(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
+    """The JSON output of clogfit for these sweeps and options. @throws ProgramFailed  with clogfit's reason"""
     return json.loads(programs.run_program(clogfit, *map(as_file, words), "--format", "json"))
 
 
@@ -79,6 +79,6 @@ def droplet_columns() -> dict[str, Column]:
 
 def fitted(clogfit: pathlib.Path, sweep: AnyPath, *options: object) -> tuple[dict[str, Any], dict[str, str]]:
     """The present answer of clogfit, and stored.circle_files(). @throws ProgramFailed  with clogfit's reason"""
-    fit = told(clogfit, sweep, *options)
+    fit = run_clogfit(clogfit, sweep, *options)
     with stored.opened(sweep, folder=clogfit.parent) as file:
         return fit, stored.circle_files(file)

@@ -34,36 +34,36 @@ class Fit:
     each column. Groups of fewer than three runs have no mean speed.
     """
 
-    def __init__(self, told: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
-        """@param told  the JSON output of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError,
-        TypeError  if `told` does not come from clogfit"""
-        self.told = told
-        self.confidence: float = told["confidence"]
-        self.units: dict[str, str] = told["units"]
-        self.doubts: dict[str, str] = told["doubts"]
-        self.known = Groups(told, circle_files)
+    def __init__(self, output: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
+        """@param output  the JSON output of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError,
+        TypeError  if `output` does not come from clogfit"""
+        self.output = output
+        self.confidence: float = output["confidence"]
+        self.units: dict[str, str] = output["units"]
+        self.doubts: dict[str, str] = output["doubts"]
+        self.known = Groups(output, circle_files)
 
     @property
     def source(self) -> str:
         """The provenance of the rows, their number, and the program that fitted them. Files of older programs state no
         provenance."""
-        sweep = self.told.get("sweep", {})
+        sweep = self.output.get("sweep", {})
         lines = [stored.source(sweep) if sweep else "", sweep.get("config", "").strip(),
-                 f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"]
+                 f"{self._counted()}, fitted by clogfit {stored.writer(self.output)}"]
         return "\n".join(filter(None, lines))
 
     def _counted(self) -> str:
-        groups = self.told["groups"]
+        groups = self.output["groups"]
         return f"{rounded.counted(sum(group.get('runs', 1) for group in groups), 'run')} in {rounded.counted(len(groups), 'group')}"
 
     @property
     def groups(self) -> pandas.DataFrame:
         """Those results of each group that are single numbers or words. P(r) and incidences are in survival() and
-        `told`."""
+        `output`."""
         import pandas
 
         flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)}
-                for group in self.told["groups"]]
+                for group in self.output["groups"]]
         return pandas.DataFrame(flat)
 
     def survival(self, group: int) -> pandas.DataFrame:
@@ -79,17 +79,17 @@ class Fit:
         import pandas
 
         checked.whole("group", group, 0)
-        if group >= len(self.told["groups"]):
-            raise UserError(f"no group {group}; there are {len(self.told['groups'])}, the first is 0")
+        if group >= len(self.output["groups"]):
+            raise UserError(f"no group {group}; there are {len(self.output['groups'])}, the first is 0")
         self.known.with_lengths()
-        told = self.told["groups"][group]
-        first = min((step["distance"] for step in told["survival"]), default=0.0)
-        start = {"distance": min(0.0, first), "at_risk": told["runs"], "clogs": 0,
+        fitted = self.output["groups"][group]
+        first = min((step["distance"] for step in fitted["survival"]), default=0.0)
+        start = {"distance": min(0.0, first), "at_risk": fitted["runs"], "clogs": 0,
                  "probability": 1.0, "standard_error": 0.0, "lower": 1.0, "upper": 1.0}
-        steps = [start, *told["survival"]]
-        beyond = [distance for distance in told["censored_distances"] if distance > steps[-1]["distance"]]
+        steps = [start, *fitted["survival"]]
+        beyond = [distance for distance in fitted["censored_distances"] if distance > steps[-1]["distance"]]
         if beyond:
-            at_end = steps[-1] if told["survival"] else start | dict.fromkeys(("lower", "upper"))
+            at_end = steps[-1] if fitted["survival"] else start | dict.fromkeys(("lower", "upper"))
             steps.append(at_end | {"distance": max(beyond), "at_risk": beyond.count(max(beyond)), "clogs": 0})
         return pandas.DataFrame(steps)
 
@@ -118,8 +118,8 @@ class Fit:
         chosen = {self.known.abscissa, *self.known.curve_parameters()}
         varies = [name for name in columns if name in chosen and known[name].nunique(dropna=False) > 1]
         of_kind = [*(() if self.known.are_passages else LENGTHS), *(PASSAGE if "status" in known else ())]
-        told = [name for name in of_kind if name in known and not known[name].isna().all()]
-        return known[[*varies, *(name for name in told if name not in varies)]]
+        results = [name for name in of_kind if name in known and not known[name].isna().all()]
+        return known[[*varies, *(name for name in results if name not in varies)]]
 
     def __repr__(self) -> str:
         return f"<fit of {self._counted()}>"
@@ -140,9 +140,9 @@ def read(path: pathlib.Path, folder: pathlib.Path | None, *options: object) -> F
                         "give a sweep, or the output of clogfit --format json") from error
     if content.startswith(HDF5_BEGINNING):
         clogfit = programs.programs_in(folder) / "clogfit"
-        told = Fit(*fits.fitted(clogfit, path, *options))
-        told.known.fit_curves(path, clogfit.parent)
-        return told
+        fit = Fit(*fits.fitted(clogfit, path, *options))
+        fit.known.fit_curves(path, clogfit.parent)
+        return fit
     try:
         return Fit(json.loads(content))
     except ValueError as error:

@@ -30,8 +30,8 @@ class Status(dict[str, Any]):
     def _repr_html_(self) -> str:
         import pandas
 
-        told = {name: value for name, value in self.items() if not isinstance(value, list | dict)}
-        return pandas.DataFrame({"": told}).to_html(header=False)
+        shown = {name: value for name, value in self.items() if not isinstance(value, list | dict)}
+        return pandas.DataFrame({"": shown}).to_html(header=False)
 
 
 class Sweep:
@@ -187,8 +187,8 @@ class Sweep:
         """`rows` with the diameter and the tilt of each droplet, if the laboratory is known."""
         if not self.rows["laboratory"].any():
             return self.rows
-        told = self.fit().told["groups"]
-        known = {name: {group["laboratory"]: group.get(name) for group in told} for name in fits.DROPLETS}
+        groups = self.fit().output["groups"]
+        known = {name: {group["laboratory"]: group.get(name) for group in groups} for name in fits.DROPLETS}
         droplets = {name: self.rows["laboratory"].map(of).astype(float)
                     for name, of in known.items() if any(of.values())}
         table = self.rows.assign(**droplets)

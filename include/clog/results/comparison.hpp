@@ -24,12 +24,12 @@ struct Side {
 
 /// The model's units in each laboratory. The key of the map is the checksum of the laboratory's description
 /// (the text of `lab.cfg`), or "" if one laboratory applies to all runs.
-using Scales = std::map<std::string, LaboratoryScale>;
-const LaboratoryScale& scale_in(const Scales& scales, const sweep::RunRow& row);
+using ScalesByLaboratory = std::map<std::string, LaboratoryScale>;
+const LaboratoryScale& scale_in(const ScalesByLaboratory& scales, const sweep::RunRow& row);
 /// Whether the droplet's diameter and tilt fix the value of this column in these runs, each of which has a
 /// laboratory in `scales`. Columns without a unit, such as friction, never follow: they may coincide.
 bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
-                          const Scales& scales);
+                          const ScalesByLaboratory& scales);
 
 /// What may spoil the length of a side.
 struct Flaws {
@@ -115,7 +115,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 /// @throws Error if two sides have no value in common, or if it is not clear which parameter sets belong
 /// together
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within,
-                    const Scales& scales = {});
+                    const ScalesByLaboratory& scales = {});
 
 std::string to_text(const Comparisons& comparisons);
 std::string to_csv(const Comparisons& comparisons);

@@ -54,8 +54,8 @@ std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const st
 /// @param asked  labels of the tables to compare with
 /// @throws Error as require_lengths()
 /// @param confidence  of the intervals to which the doubt of failures refers
-DistanceTable distances_of(const Side& side, const Scales& scales, const std::vector<std::string>& asked,
-                           double confidence);
+DistanceTable distances_of(const Side& side, const ScalesByLaboratory& scales,
+                           const std::vector<std::string>& asked, double confidence);
 /// What may spoil the length of each group. Of measured distances only few_clogs, not_exponential and
 /// equal_distances are known.
 std::vector<Flaws> flaws_of(const DistanceTable& table);

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "clog/results/run_list.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
-#include "clog/sweep/settings.hpp"
 
 namespace clog::results {
 
@@ -35,9 +35,9 @@ MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance
 /// A single file is returned as it is.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
-/// Gives each task the number that it has in the settings, and circles the names that they have there. Rows
-/// of runs outside the settings follow at the end.
-void number_tasks(const sweep::Settings& settings, store::SweepFile& table);
+/// Gives each task the number that it has in the settings of the runs, and circles the names that they have
+/// there. Rows of runs outside these settings follow at the end. Returns the settings as a config.
+std::string number_tasks(const RunList& runs, store::SweepFile& table);
 
 /// Provenance of a file that is made from rows of other files.
 /// @param maker  provenance of the program that makes the file, from cli::origin()

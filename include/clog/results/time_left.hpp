@@ -5,6 +5,8 @@
 #include <span>
 #include <string>
 
+#include "clog/sweep/run_row.hpp"
+
 namespace clog::results {
 
 /// Remaining time of a sweep, as a range [s].
@@ -21,9 +23,15 @@ struct SetTimes {
   std::int64_t num_running = 0;
   std::int64_t num_waiting = 0;
   double seconds = 0;  ///< total time of the finished runs, and of the running runs so far
+
+  /// Counts a run of the set that has begun, with its cost so far.
+  void count(const sweep::RunRow& row);
+  /// Expected time of a run: the mean of an exponential distribution, fitted to the finished runs and, as
+  /// censored, to the running runs. Infinite without a finished run.
+  double mean_seconds() const;
 };
 /// Estimates the remaining time of a sweep. Short runs end first, so the mean over finished runs alone is too
-/// small. Therefore running runs count as censored, as for the clogging length. Each parameter set has its
+/// small. Therefore running runs count as censored, see SetTimes::mean_seconds(). Each parameter set has its
 /// own mean; a set without a finished run gets the mean of all sets, with an equally large error.
 ///
 /// The time left is each rank's share of the waiting runs, plus a tail in which the W ranks run out of tasks

@@ -15,10 +15,8 @@ namespace clog::scheduler {
 /// while a long task finishes.
 ///
 /// The tasks of a group differ in their seed only, and are handed out in order. A group's expected run time
-/// is the mean of an exponential distribution, fitted to its finished tasks and, as censored, its running
-/// tasks: the total time of all these tasks divided by the number that ended. Tasks of a group without an
-/// ended task are expected to run longer than all others; of several such groups, the one with the fewest
-/// tasks handed out is next.
+/// is results::SetTimes::mean_seconds(). Tasks of a group without an ended task are expected to run longer
+/// than all others; of several such groups, the one with the fewest tasks handed out is next.
 class TaskOrder {
  public:
   using GroupOf = std::function<std::int64_t(std::int64_t task)>;

@@ -58,6 +58,11 @@ struct Column {
     return parameter && parameter->may_be_automatic(run);
   }
 
+  /// Whether the column stores the checksum of a file or of a text.
+  bool holds_check_sum() const {
+    return parameter && (parameter->kind == ValueKind::file || parameter->kind == ValueKind::text);
+  }
+
   /// Writes `size` bytes in a file's layout; unset values are stored as NaN, -1 or "".
   void pack(const RunRow& row, std::byte* bytes) const;
   /// Reads these bytes; columns must be read in the order of columns(). `unpacked` keeps the first fault.

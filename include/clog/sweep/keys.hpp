@@ -20,6 +20,8 @@ struct Key {
   std::string help;            ///< meaning and unit
   const Parameter* parameter;  ///< nullptr: preset
 
+  bool is_ensemble() const { return parameter && parameter->role == ParameterRole::ensemble; }
+
   /// Sets the key's parameter to a value. Does nothing for the preset, which acts through other keys. Does
   /// nothing for obstacles either, because the values of this key only name files; Plan knows the content of
   /// these files. @throws Error, without the key's name, if the value cannot be read or is out of the type's

@@ -100,6 +100,9 @@ std::string identity_in_any_version(RunRow row);
 RunRow describe(const RunParameters& run);
 /// Fills the columns of results.
 inline void record(const RunResult& result, RunRow& row) { static_cast<RunResult&>(row) = result; }
+/// The row of a run that has just begun: its results are those of RunResult{}, which are all known.
+/// @param run  resolved
+RunRow begun_row(const RunParameters& run, std::int64_t task);
 
 /// The row as bytes, one column after the other, as it is stored and sent to other processes of this version.
 std::size_t packed_size();

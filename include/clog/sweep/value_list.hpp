@@ -30,9 +30,6 @@ std::vector<std::string_view> numbers_in(std::string_view list);
 
 using clog::shortest;
 
-/// `1 run`, `2 runs`.
-std::string counted(std::int64_t number, const std::string& noun);
-
 /// The error for a text in which something like a unit follows a number.
 struct NumberWithUnit : Error {
   using Error::Error;
@@ -44,12 +41,5 @@ long long to_integer(std::string_view text);
 
 /// The number `0.3` that `0,3` means with a decimal comma; empty for any other text.
 std::string with_decimal_point(std::string_view text);
-
-/// The candidate nearest to a mistyped word, or empty if none is near.
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
-
-/// The candidates that end with the word, as wall-contact ends with contact. If there are none, the
-/// candidates that contain the word between dashes.
-std::vector<std::string> with_part(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace clog::sweep

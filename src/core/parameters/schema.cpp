@@ -178,6 +178,7 @@ struct Facts {
   ParameterRole role = ParameterRole::physics;
   const ParameterScope* scope = &every_run;
   const ParameterScope* automatic_in = nullptr;
+  int automatic_order = 0;
   ParameterRange range = {};
   bool has_own_column = true;
   bool shapes_array = false;
@@ -200,6 +201,7 @@ Parameter entry(const char* key, Member, const Facts& facts) {
       .role = facts.role,
       .scope = facts.scope,
       .automatic_in = facts.automatic_in,
+      .automatic_order = facts.automatic_order,
       .range = facts.range,
       .has_own_column = facts.has_own_column,
       .shapes_array = facts.shapes_array,
@@ -240,6 +242,7 @@ std::vector<Parameter> droplet_entries() {
              .meaning = "E_w, stiffness of contact; auto (dp only): the largest stiffness that is stable "
                         "with time-step and vertices",
              .automatic_in = &polygons,
+             .automatic_order = 3,
              .range = {positive, {}},
              .words = {"auto"}}),
   };
@@ -553,6 +556,7 @@ std::vector<Parameter> interface_entries() {
              .role = numerics,
              .scope = &polygons,
              .automatic_in = &polygons,
+             .automatic_order = 1,
              .range = {from(16, "a polygon with fewer vertices is far from a circle", "use 16..4096"),
                        to(4096, "a run would take months", "use 16..4096")},
              .words = {"auto"},
@@ -576,6 +580,7 @@ std::vector<Parameter> interface_entries() {
                         "the result; the published step is 1e-3",
              .role = numerics,
              .automatic_in = &every_run,
+             .automatic_order = 2,
              .range = {from(1e-9, "no mode needs so short a step", "try 1e-3"), {}},
              .words = {"auto"}}),
       entry("area-stiffness", [](auto& run) -> auto& { return run.dp.area_stiffness; },

@@ -65,7 +65,9 @@ struct Parameter {
   ParameterRole role;
   const ParameterScope* scope;
   const ParameterScope*
-      automatic_in;      ///< runs in which the value, unless given, follows from other parameters
+      automatic_in;  ///< runs in which the value, unless given, follows from other parameters
+  /// An automatic value may follow from the automatic values with smaller numbers above 0; 0: from none.
+  int automatic_order;
   ParameterRange range;  ///< the range, if the values are numbers
   bool has_own_column;   ///< false: the column describes other parameters as well
   bool shapes_array;     ///< whether different values give different obstacle arrays
@@ -84,6 +86,10 @@ struct Parameter {
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
   /// Whether the parameter's value, unless it is given, follows from other parameters of this run.
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
+  /// Whether the automatic value may follow from the automatic value of the other parameter.
+  bool may_follow_from(const Parameter& other) const {
+    return other.automatic_order > 0 && automatic_order > other.automatic_order;
+  }
 };
 
 /// All parameters, in the order in which they are displayed. A plan's axes have the same order, which

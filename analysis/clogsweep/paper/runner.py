@@ -48,7 +48,7 @@ def in_row(row: np.void, key: str, otherwise: str) -> str:
     """The text of a key's value in a row. If the row has no number for the key, `otherwise` is returned."""
     if key == "perimeter-stiffness-ratio":
         return as_text(row["perimeter_stiffness"] / row["line_tension"])
-    column = key.replace("-", "_")
+    column = "seed" if key == "seeds" else key.replace("-", "_")
     has_number = column in stored.columns_of(row) and not isinstance(row[column], bytes)
     return as_text(row[column]) if has_number and otherwise.lstrip("+-.")[:1].isdigit() else otherwise
 
@@ -71,7 +71,7 @@ class Override:
 
 
 @dataclasses.dataclass
-class Workshop:
+class Runner:
     """@param rows_folder  a folder of finished sweeps: they are read, and no sweep is run"""
 
     size: str
