@@ -12,7 +12,7 @@
 namespace clog::results {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 double area_of(const Member& member) { return member.diameter * member.diameter; }
 
@@ -80,7 +80,7 @@ void add(const Member& member, Diameters& all) {
 
 /// Divides sums over all ancestors by their number.
 void make_means(Diameters& all, double num_ancestors) {
-  all.mean = all.number > 0 ? all.mean / all.number : unknown;
+  all.mean = all.number > 0 ? all.mean / all.number : no_number;
   for (double* sum : {&all.number, &all.area}) *sum /= num_ancestors;
   for (auto* sums : {&all.numbers, &all.areas})
     for (double& sum : *sums) sum /= num_ancestors;
@@ -150,8 +150,8 @@ void set_intervals(const ProductLimit& estimator, std::size_t num_families, doub
     std::vector<double>& values = drawn[line];
     std::ranges::sort(values);
     const bool is_known = tail >= 1 && values.front() < values.back();
-    lines[line].interval = {is_known ? values[static_cast<std::size_t>(tail)] : unknown,
-                            is_known ? values[static_cast<std::size_t>(std::ceil(last - tail))] : unknown};
+    lines[line].interval = {is_known ? values[static_cast<std::size_t>(tail)] : no_number,
+                            is_known ? values[static_cast<std::size_t>(std::ceil(last - tail))] : no_number};
   }
 }
 
