@@ -121,7 +121,7 @@ figure("7c", "clogging length against sag, deformable polygons and soft disk, mi
        ["clogging-robust", "clogging-friction", "clogging-elastic", "clogging-sp"], "shared with 6c, 7a")(
     lambda runner: over_sag(runner, [*((family.config, family.label, family.of)
                                        for family in FAMILIES if runner.has(family.config)),
-                                 ("clogging-sp", "soft disk", list)], 0.2, "length"))
+                                     ("clogging-sp", "soft disk", list)], 0.2, "length"))
 
 
 # The map
