@@ -8,6 +8,7 @@ import sys
 from docutils import nodes
 from sphinx import addnodes
 from sphinx.transforms.post_transforms import SphinxPostTransform
+from sphinx.util import logging
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -58,6 +59,9 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
     ("files", "clogsweep-files", "what clogsweep, clogrun and clogfit write and read", 5),
     ("exit-codes", "clogsweep-exit-codes", "how clogsweep, clogrun and clogfit end", 7),
     ("analysis", "clogsweep-python", "figures, films and reports, python3 -m clogsweep", 7)]]
+
+# Addresses of earlier versions of the site, and where their text is now
+MOVED = {"explanation/limits": "explanation/trust.html", "explanation/soundness": "explanation/trust.html#sound-droplets"}
 
 
 class ForTerminals(SphinxPostTransform):
@@ -129,9 +133,23 @@ def with_plain_search(app, page, template, context, doctree):
         app.add_js_file("search.js", priority=900)
 
 
+def write_moved_pages(app, exception):
+    """At the address of each moved page, writes a page that leads to the present one."""
+    if exception:
+        return
+    for page, target in MOVED.items():
+        if target.partition(".")[0] not in app.env.found_docs:
+            logging.getLogger(__name__).warning(f"conf.py: {page} has moved to {target}, which is no page")
+        address = posixpath.relpath(target, posixpath.dirname(page))
+        (pathlib.Path(app.outdir) / f"{page}.html").write_text(
+            f'<!DOCTYPE html>\n<meta charset="utf-8"><title>Moved</title>\n<meta http-equiv="refresh" content="0; url={address}">\n'
+            f'<a href="{address}">This page has moved.</a>\n')
+
+
 def setup(app):
     app.add_post_transform(ForTerminals)
     if "sphinx.ext.autodoc" in extensions:
         app.connect("autodoc-process-docstring", in_fields)
         app.connect("html-page-context", with_plain_search)
         app.connect("doctree-read", with_links_to_pictures)
+        app.connect("build-finished", write_moved_pages)

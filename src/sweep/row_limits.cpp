@@ -23,7 +23,7 @@
 namespace clog::sweep {
 namespace {
 
-// These limits are those of docs/explanation/soundness.md.
+// These limits are those of docs/explanation/trust.md.
 constexpr double largest_tension = 10;
 constexpr int fewest_vertices = 64;
 constexpr int most_vertices = 1024;
@@ -105,7 +105,7 @@ std::string untested_parameters(const Plan& plan) {
     all.resize(most_named);
     all.push_back(others);
   }
-  return "outside the range tested for soundness (handbook, Which droplets are sound): " + joined(all);
+  return "outside the range tested for soundness (handbook, How far to trust it): " + joined(all);
 }
 
 double repetition_length(const RunRow& row) {

@@ -84,7 +84,7 @@ class Run(ProgramTest):
                 keys = ["line-tension=0", "max-time=1"]
                 done = self.run_program("clogrun", *system, *keys)
                 self.assertEqual(done.stderr.splitlines()[0],
-                                 "outside the range tested for soundness (handbook, Which droplets are sound): line-tension=0 "
+                                 "outside the range tested for soundness (handbook, How far to trust it): line-tension=0 "
                                  "(robust is tested from 0.05 to 10)")
         self.assertEqual(self.succeed("clogrun", "array", *SMALL, "max-time=1", "--output", "sound.h5").stderr, "")
 

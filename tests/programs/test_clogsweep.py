@@ -311,7 +311,7 @@ class Sweep(ProgramTest):
         self.assertNotIn("soundness", told)
         told = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
         self.assertIn("# droplets of 1 of 1 parameter set may travel farther than the length of their array ", told)
-        self.assertIn("# outside the range tested for soundness (handbook, Which droplets are sound): line-tension=30 ",
+        self.assertIn("# outside the range tested for soundness (handbook, How far to trust it): line-tension=30 ",
                       self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
     def test_what_was_not_tested_is_said_once_when_the_sweep_starts(self):

@@ -1,5 +1,5 @@
 /// The program `soundness` tests whether every droplet stays physically sound. See
-/// docs/explanation/soundness.md.
+/// docs/explanation/trust.md.
 
 #include <algorithm>
 #include <atomic>

@@ -81,7 +81,7 @@ inline constexpr DoubtText doubt_texts[] = {
      "lambda would be below its interval if all failed runs had clogged where they failed"},
     {Doubt::untested, 'u', "untested",
      "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
-     "cross themselves or obstacles (handbook, Which droplets are sound)"}};
+     "cross themselves or obstacles (handbook, How far to trust it)"}};
 const DoubtText& text_of(Doubt doubt);
 /// The letters, the words with a space between them, and a legend: a blank line and a line for each different
 /// doubt, in the order of doubt_texts; empty without doubts.
