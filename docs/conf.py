@@ -61,7 +61,8 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
     ("analysis", "clogsweep-python", "figures, films and reports, python3 -m clogsweep", 7)]]
 
 # Addresses of earlier versions of the site, and where their text is now
-MOVED = {"explanation/limits": "explanation/trust.html", "explanation/soundness": "explanation/trust.html#sound-droplets"}
+MOVED = {"explanation/limits": "explanation/trust.html",
+         "explanation/soundness": "explanation/trust.html#sound-droplets"}
 
 
 class ForTerminals(SphinxPostTransform):
@@ -142,8 +143,8 @@ def write_moved_pages(app, exception):
             logging.getLogger(__name__).warning(f"conf.py: {page} has moved to {target}, which is no page")
         address = posixpath.relpath(target, posixpath.dirname(page))
         (pathlib.Path(app.outdir) / f"{page}.html").write_text(
-            f'<!DOCTYPE html>\n<meta charset="utf-8"><title>Moved</title>\n<meta http-equiv="refresh" content="0; url={address}">\n'
-            f'<a href="{address}">This page has moved.</a>\n')
+            '<!DOCTYPE html>\n<meta charset="utf-8"><title>Moved</title>\n'
+            f'<meta http-equiv="refresh" content="0; url={address}">\n<a href="{address}">This page has moved.</a>\n')
 
 
 def setup(app):
