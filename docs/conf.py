@@ -63,6 +63,7 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
 # Addresses of earlier versions of the site, and where their text is now
 MOVED = {"explanation/limits": "explanation/trust.html",
          "explanation/open-points": "explanation/model.html#what-the-article-leaves-open",
+         "explanation/predicted": "reference/analysis.html#where-predictions-hold",
          "explanation/soundness": "explanation/trust.html#sound-droplets"}
 
 

@@ -2,7 +2,7 @@
 obstacles, and which single obstacles, hold a droplet. The prediction follows from the number of such pairs and
 obstacles in an array.
 
-docs/explanation/predicted.md describes the law and its limits.
+docs/reference/analysis.md describes the law and its limits.
 """
 
 import dataclasses
@@ -32,7 +32,7 @@ OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6
 SPEED = 0.03  # Default terminal speed [sqrt(sigma g)].
 SMALLEST_LENGTH = 4  # Predictions below this length were too long by a third and more [sigma].
 # Smallest line tension that causes no warning. At 0.5 up to 42 % of all clogs hang on three obstacles, and at 0.3 up to
-# 85 % (docs/explanation/predicted.md).
+# 85 % (docs/reference/analysis.md).
 SOFTEST = 1
 ARRAYS, ARRAY_BOX = 4, 60  # Number of random arrays in which pairs are counted, and their width [sigma].
 
@@ -200,7 +200,7 @@ def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
-    """Reasons why a predicted length may be wrong by more than a tenth. docs/explanation/predicted.md explains them."""
+    """Reasons why a predicted length may be wrong by more than a tenth. docs/reference/analysis.md explains them."""
     return [word for word, holds in (("soft", tension < SOFTEST), ("crowded", length < SMALLEST_LENGTH)) if holds]
 
 
