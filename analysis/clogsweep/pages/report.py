@@ -316,7 +316,7 @@ def progress_of(status: dict[str, Any]) -> str:
     return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
 
-LENGTHS = ("&lambda; is the distance that a fraction 1/e of the droplets travels without clogging, "
+LENGTHS = ("&lambda; is the mean distance that droplets travel before they clog, "
            "in droplet diameters; v<sub>t</sub> is the speed of a free droplet. "
            "Each point of a curve has a row of the table.")
 
