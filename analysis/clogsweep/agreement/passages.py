@@ -101,7 +101,8 @@ def profiles_are_smooth(runner: Runner) -> Finding:
     is_smooth = {count: passes[count] and noise[count] <= SMOOTH for count in coarser}
     verdict = (DOES_NOT if not all(is_smooth[count] for count in coarser if count >= 128) else
                AGREES if all(noise[count] > SMOOTH for count in coarser if count < 128) else IN_KIND)
-    words = [f"{noise[count]:.2g} v_t with {count}" + ("" if passes[count] else " (does not pass)") for count in coarser]
+    words = [f"{noise[count]:.2g} v_t with {count}" + ("" if passes[count] else " (does not pass)")
+             for count in coarser]
     return Finding(verdict, f"ripples about the profile of {finest} vertices: {', '.join(words)}")
 
 

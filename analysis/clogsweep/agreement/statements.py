@@ -84,8 +84,8 @@ STATEMENTS = [
     Statement(
         "appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on",
         SURFACE,
-        "from 128 vertices on, droplets pass and profiles ripple by at most 0.02 v_t about that of the finest mesh; those"
-        " of coarser meshes ripple more, qualitatively also less",
+        "from 128 vertices on, droplets pass and profiles ripple by at most 0.02 v_t about that of the finest mesh;"
+        " those of coarser meshes ripple more, qualitatively also less",
         passages.profiles_are_smooth, ("B1",),
         {IN_KIND: "the profiles of coarse meshes are smooth up to where the droplet stops"}),
     Statement(

@@ -192,8 +192,9 @@ def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[s
     are_cut = found.farthest > 2 * found.corner
     advice = "; thin parts are cut off, and a smaller --corner keeps more of them" if are_cut else ""
     return found.device, [f"{rounded.count_text(number, 'post')} not round (red lines) "
-                          f"as {rounded.count_text(len(found.device.circles) - len(device.circles), 'circle')} in rows: "
-                          f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), "
+                          f"as {rounded.count_text(len(found.device.circles) - len(device.circles), 'circle')} "
+                          f"in rows: corners lose {found.farthest:.2g} at most "
+                          f"({found.farthest * micrometres:.2g} um), "
                           f"walls are rough by {found.roughness:.2g}, in droplet diameters{advice}"]
 
 
@@ -250,8 +251,8 @@ def body() -> int:
     if device.others:
         uneven = "; if the picture is lit unevenly, even it out and make it black and white first"
         light = uneven if drawing.is_picture else ""
-        raise UserError(f"{rounded.count_text(len(device.others), 'post')} of {len(device.others) + len(device.circles)} "
-                        f"not round, red in the picture; no {table} "
+        raise UserError(f"{rounded.count_text(len(device.others), 'post')} of "
+                        f"{len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
                         "was written. Use --as-rows for rows of circles along their outlines, "
                         "--as-circles for circles of the same area, or a larger --tolerance; "
                         "cut scale bars and labels away with --region or in the drawing, "

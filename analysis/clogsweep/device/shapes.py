@@ -313,8 +313,8 @@ def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
     """@param outlines  that will not become posts as they are. @throws UserError  if round posts became part of them"""
     number = sum(posts for outline, posts in drawing.swallowing if walls.is_one_of(outline, outlines))
     if number:
-        raise UserError(f"{rounded.count_text(number, 'round post')} would vanish, because posts cross a larger outline, "
-                        "such as the rim of a reservoir, and were united with it; "
+        raise UserError(f"{rounded.count_text(number, 'round post')} would vanish, because posts cross a larger "
+                        "outline, such as the rim of a reservoir, and were united with it; "
                         "choose the layer of the posts by --layer, "
                         f"or a part of the drawing by --region{drawing.layers_in_words()}")
 
