@@ -7,6 +7,7 @@ import sys
 
 from docutils import nodes
 from sphinx import addnodes
+from sphinx.errors import ExtensionError
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -58,6 +59,11 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
     ("files", "clogsweep-files", "what clogsweep, clogrun and clogfit write and read", 5),
     ("exit-codes", "clogsweep-exit-codes", "how clogsweep, clogrun and clogfit end", 7),
     ("analysis", "clogsweep-python", "figures, films and reports, python3 -m clogsweep", 7)]]
+
+# Pages that became parts of other pages. The site redirects from their old addresses.
+MOVED = {
+    "how-to/lateral-displacement": "how-to/lattice.html#find-the-critical-angle",
+}
 
 
 class ForTerminals(SphinxPostTransform):
@@ -129,9 +135,24 @@ def with_plain_search(app, page, template, context, doctree):
         app.add_js_file("search.js", priority=900)
 
 
+def with_moved_pages(app, exception):
+    """Writes a page with a redirect at the old address of every moved page."""
+    if exception or app.builder.format != "html":
+        return
+    for old, new in MOVED.items():
+        path, _, anchor = new.partition("#")
+        if anchor and f'id="{anchor}"' not in pathlib.Path(app.outdir, path).read_text():
+            raise ExtensionError(f"MOVED of docs/conf.py: {path} has no anchor {anchor}")
+        target = posixpath.relpath(new, posixpath.dirname(old))
+        pathlib.Path(app.outdir, f"{old}.html").write_text(
+            f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>Moved</title>\n'
+            f'<meta http-equiv="refresh" content="0; url={target}">\n<a href="{target}">This page has moved</a>\n')
+
+
 def setup(app):
     app.add_post_transform(ForTerminals)
     if "sphinx.ext.autodoc" in extensions:
         app.connect("autodoc-process-docstring", in_fields)
         app.connect("html-page-context", with_plain_search)
         app.connect("doctree-read", with_links_to_pictures)
+        app.connect("build-finished", with_moved_pages)

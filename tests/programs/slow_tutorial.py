@@ -54,7 +54,6 @@ class Pages(ProgramTest):
 
     def test_a_lattice(self):
         self.follow("docs/how-to/lattice.md")
-        self.follow("docs/how-to/lateral-displacement.md")
 
     def test_contact_angles(self):
         self.follow("docs/how-to/contact-angles.md")
