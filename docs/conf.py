@@ -62,6 +62,7 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
 
 # Pages that became parts of other pages. The site redirects from their old addresses.
 MOVED = {
+    "how-to/other-arrays": "how-to/own-obstacles.html",
     "how-to/lateral-displacement": "how-to/lattice.html#find-the-critical-angle",
 }
 
