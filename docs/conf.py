@@ -63,6 +63,7 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
 # Pages that became parts of other pages. The site redirects from their old addresses.
 MOVED = {
     "how-to/other-arrays": "how-to/own-obstacles.html",
+    "how-to/own-distances": "how-to/compare-sweeps.html#your-own-distances",
     "how-to/lateral-displacement": "how-to/lattice.html#find-the-critical-angle",
 }
 
