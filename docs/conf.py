@@ -55,8 +55,7 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
     ("clogrun", "clogrun", "one droplet, watched closely", 1),
     ("clogfit", "clogfit", "clogging lengths and speeds of a sweep", 1),
     ("keys", "clogsweep-keys", "parameters of a run, on the command line and in config files", 5),
-    ("columns", "clogsweep-columns", "columns of the table of runs", 5),
-    ("files", "clogsweep-files", "what clogsweep, clogrun and clogfit write and read", 5),
+    ("files", "clogsweep-files", "files of clogsweep, and columns of the table of runs", 5),
     ("exit-codes", "clogsweep-exit-codes", "how clogsweep, clogrun and clogfit end", 7),
     ("analysis", "clogsweep-python", "figures, films and reports, python3 -m clogsweep", 7)]]
 
@@ -64,6 +63,7 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
 MOVED = {
     "how-to/other-arrays": "how-to/own-obstacles.html",
     "how-to/own-distances": "how-to/compare-sweeps.html#your-own-distances",
+    "reference/columns": "reference/files.html#columns-of-the-table-of-runs",
     "how-to/lateral-displacement": "how-to/lattice.html#find-the-critical-angle",
 }
 
