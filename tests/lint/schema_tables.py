@@ -61,7 +61,7 @@ def columns(schema):
         yield from definition(name, meaning + ("; likewise " if others else "") + ", ".join(others))
 
 
-TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/columns.md", "columns", columns)]
+TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/files.md", "columns", columns)]
 
 
 def renewed(text, name, lines):

@@ -46,15 +46,11 @@ class Pages(ProgramTest):
     def test_the_sweep_of_the_first_page(self):
         self.follow("README.md")
 
-    def test_other_random_arrays(self):
-        self.follow("docs/how-to/other-arrays.md")
-
     def test_obstacles_of_your_own(self):
         self.follow("docs/how-to/own-obstacles.md")
 
     def test_a_lattice(self):
         self.follow("docs/how-to/lattice.md")
-        self.follow("docs/how-to/lateral-displacement.md")
 
     def test_contact_angles(self):
         self.follow("docs/how-to/contact-angles.md")
