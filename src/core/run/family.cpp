@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
+#include "clog/core/droplet/droplet.hpp"
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/polygon/cut.hpp"
@@ -125,6 +128,15 @@ void FamilyRun::Birth::restore(ByteReader& bytes) {
   state.restore(bytes);
   bytes.get(num_vertices);
   bytes.get(way);
+  const bool is_placed = member.diameter > 0 && member.diameter <= 1 && member.birth.time >= 0 &&
+                         std::isfinite(member.birth.time) && member.path.size() <= longest_path;
+  const bool is_followed = member.status != MemberEnd::small;
+  const bool has_shape = state.size() == num_vertices && state.velocity.size() == state.position.size() &&
+                         num_vertices >= fewest_vertices_of_a_daughter &&
+                         (state.position.abs() < burst_perimeter).all() && state.velocity.isFinite().all() &&
+                         (state.frame.period > 0).all() && (state.frame.origin >= 0).all() &&
+                         (state.frame.origin < state.frame.period).all();
+  if (!is_placed || (is_followed && !has_shape)) throw Error("a daughter of the snapshot is out of range");
 }
 
 FamilyRun::FamilyRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles)
@@ -134,11 +146,37 @@ FamilyRun::FamilyRun(RunParameters run, std::shared_ptr<const ObstacleArray> obs
     : run_(std::move(run)), obstacles_(std::move(obstacles)), ancestor_(std::move(ancestor)) {}
 
 bool FamilyRun::advance(int num_checks) {
-  DropletRun& run = daughter_ ? *daughter_ : ancestor_;
-  if (!run.advance(num_checks)) return false;
-  if (!has_daughters()) return true;
-  end_present();
+  if (!daughter_) {
+    if (!ancestor_.advance(num_checks)) return false;
+    if (!has_daughters()) return true;
+    end_present();
+  } else {
+    bool has_ended = false;
+    const bool is_sound = succeeds([&] {
+      has_ended = daughter_->advance(num_checks);
+      if (has_ended) end_present();
+    });
+    if (is_sound && !has_ended) return false;
+  }
   return !begin_next();
+}
+
+/// Whether some work for the present daughter succeeds. An exception ends the daughter, but not its family;
+/// without memory, the whole family fails, and may be run again.
+template <class Work>
+bool FamilyRun::succeeds(const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    present_.status = MemberEnd::failed;
+    present_.mechanism = ClogMechanism::none;
+    present_.end = daughter_ ? place_of_failure(daughter_->result()) : present_.birth;
+    members_.push_back(present_);
+    return false;
+  }
 }
 
 /// The present member's displacement and time as those of the family.
@@ -149,10 +187,17 @@ FamilyPoint FamilyRun::point_of(const Eigen::Array2d& displacement, double time)
           .time = present_.birth.time + std::sqrt(d) * time};
 }
 
+/// Where a member was last whole; how far across the flow is not known.
+FamilyPoint FamilyRun::place_of_failure(const RunResult& result) const {
+  return point_of({result.sound_distance, std::numeric_limits<double>::quiet_NaN()}, result.time);
+}
+
 void FamilyRun::end_present() {
   const RunResult result = present().result();
-  present_.end = point_of({result.distance, result.lateral}, result.time);
   present_.status = end_of(result.status);
+  present_.end = present_.status == MemberEnd::failed
+                     ? place_of_failure(result)
+                     : point_of({result.distance, result.lateral}, result.time);
   present_.mechanism = result.hold.mechanism;
   if (result.status == RunStatus::broken) cut_present();
   members_.push_back(present_);
@@ -164,17 +209,16 @@ void FamilyRun::cut_present() {
   const PolygonShape shape = polygon_shape(state.position);
   const double edge = shape.perimeter / static_cast<double>(state.size());
   const Neck neck = thinnest_neck(state.position, mother.parameters().dp.break_up_neck);
-  char number = '0';
+  std::vector<Birth> births;
   for (const MovingPolygon& part : cut({state.position, state.velocity}, neck)) {
     const PolygonShape part_shape = polygon_shape(part.position);
-    Birth birth;
-    birth.member.path = present_.path + number++;
+    Birth& birth = births.emplace_back();
+    birth.member.path = present_.path + (births.size() == 1 ? '0' : '1');
     birth.member.diameter = present_.diameter * std::sqrt(part_shape.area / shape.area);
     birth.member.birth = point_of(mother.displacement_of(area_centroid(part.position)), mother.time());
     if (birth.member.diameter < run_.dp.smallest_daughter || birth.member.path.size() == longest_path) {
       birth.member.end = birth.member.birth;
       birth.member.status = MemberEnd::small;
-      births_.push_back(std::move(birth));
       continue;
     }
     birth.num_vertices =
@@ -189,9 +233,26 @@ void FamilyRun::cut_present() {
     while (birth.state.recentre().any()) {
     }
     birth.way = (ancestor_.way() - birth.member.birth.distance) / birth.member.diameter;
-    births_.push_back(std::move(birth));
   }
+  std::ranges::move(births, std::back_inserter(births_));
 }
+
+std::optional<DropletRun> FamilyRun::at_birth(const std::string& path) && {
+  only_ = path;
+  while (present_.path != path)
+    if (advance(1)) return std::nullopt;
+  return daughter_ ? std::move(*daughter_) : std::move(ancestor_);
+}
+
+std::optional<Member> FamilyRun::member(const std::string& path) && {
+  only_ = path;
+  const auto is_found = [&] { return !members_.empty() && members_.back().path == path; };
+  while (!is_found() && !advance(1)) continue;
+  return is_found() ? std::optional(members_.back()) : std::nullopt;
+}
+
+/// Whether the member is wanted, or one of those from which it descends.
+bool FamilyRun::is_followed(const std::string& path) const { return !only_ || only_->starts_with(path); }
 
 /// Starts the next daughter. Returns whether there is one.
 bool FamilyRun::begin_next() {
@@ -201,11 +262,12 @@ bool FamilyRun::begin_next() {
     Birth birth = std::move(births_.front());
     births_.pop_front();
     present_ = birth.member;
+    if (!is_followed(present_.path)) continue;
     if (present_.status == MemberEnd::small) {
       members_.push_back(present_);
       continue;
     }
-    begin(birth, {});
+    if (!succeeds([&] { begin(birth, {}); })) continue;
     present_birth_ = std::move(birth);
     return true;
   }

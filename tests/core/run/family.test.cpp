@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -93,6 +95,39 @@ TEST(Family, HasTheAncestorOfARunThatEndsAtBreakUp) {
   EXPECT_EQ(family.result().distance, single.result().distance);
   EXPECT_EQ(family.result().steps, single.result().steps);
   EXPECT_TRUE(single.members().empty());
+}
+
+/// No number is the speed of these daughters, so their runs fail at once.
+TEST(Family, OutlivesADaughterWhoseRunFails) {
+  RunParameters run = soft_run(1);
+  run.drag.speed_exponent = std::numeric_limits<double>::quiet_NaN();
+  const FamilyRun family = finished(run);
+  EXPECT_EQ(family.result().status, RunStatus::broken);
+  const std::vector<Member>& members = family.members();
+  ASSERT_EQ(members.size(), 3);
+  for (const Member& member : {members[1], members[2]}) {
+    EXPECT_EQ(member.status, MemberEnd::failed);
+    EXPECT_EQ(member.end.distance, member.birth.distance);
+    EXPECT_TRUE(std::isnan(member.end.lateral));
+  }
+}
+
+TEST(Family, RepeatsOneMember) {
+  const RunParameters run = soft_run(1);
+  const auto walls = walls_of(run);
+  for (const Member& member : finished(run).members()) {
+    const std::optional<Member> again = FamilyRun(run, walls).member(member.path);
+    ASSERT_TRUE(again) << member.path;
+    expect_equal({*again}, {member});
+    std::optional<DropletRun> born = FamilyRun(run, walls).at_birth(member.path);
+    ASSERT_EQ(born.has_value(), member.status != MemberEnd::small);
+    if (!born) continue;
+    EXPECT_EQ(born->time(), 0);
+    while (!born->advance(1000)) continue;
+    EXPECT_NEAR(member.birth.distance + member.diameter * born->result().distance, member.end.distance,
+                1e-12);
+  }
+  EXPECT_FALSE(FamilyRun(run, walls).member("0000000"));
 }
 
 TEST(Family, ResumesFromASnapshotBitForBit) {

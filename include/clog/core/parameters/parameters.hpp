@@ -101,7 +101,7 @@ struct Words<ClogDetection> {
                                                   {ClogDetection::threshold, "threshold"}};
 };
 
-/// What follows when a droplet breaks up: the run ends, or goes on with the daughters.
+/// What follows when a droplet breaks up: the run ends, or continues with the daughters.
 enum class BreakUp { end, daughters };
 template <>
 struct Words<BreakUp> {

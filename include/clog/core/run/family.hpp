@@ -41,7 +41,8 @@ struct Member {
   /// Empty for the ancestor. A daughter's path is that of its mother, and 0 or 1.
   std::string path;
   double diameter = 1;  ///< sqrt(area of the member / area of the ancestor)
-  FamilyPoint birth, end;
+  FamilyPoint birth;
+  FamilyPoint end;  ///< if the member failed: where it was last whole, with a `lateral` of NaN
   MemberEnd status = MemberEnd::failed;
   std::optional<ClogMechanism> mechanism = ClogMechanism::none;
 };
@@ -74,7 +75,7 @@ ObstacleArray obstacles_in_units_of(const ObstacleArray& obstacles, double diame
 ///
 /// A droplet that breaks up is cut along its neck. Each daughter takes its part of the interface, with the
 /// velocities there, and vertices at the mean distance of those of its mother. Daughters do not feel each
-/// other.
+/// other. A daughter whose run fails ends there, and the others go on.
 class FamilyRun {
  public:
   FamilyRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles);
@@ -91,6 +92,11 @@ class FamilyRun {
   /// Empty before the first snapshot of the ancestor.
   std::vector<std::byte> snapshot() const;
   const DropletRun& ancestor() const { return ancestor_; }
+  /// For a run that has not been advanced, here and below: the run of one member at its birth, or nothing if
+  /// there is no such member, or it was not followed. Only those from which it descends are run.
+  std::optional<DropletRun> at_birth(const std::string& path) &&;
+  /// One member that has ended, or nothing if there is none.
+  std::optional<Member> member(const std::string& path) &&;
   /// The droplet that moves at present, and its member.
   const DropletRun& present() const { return daughter_ ? *daughter_ : ancestor_; }
   const Member& present_member() const { return present_; }
@@ -115,10 +121,15 @@ class FamilyRun {
   std::optional<Birth> present_birth_;  // of the daughter
   std::deque<Birth> births_;
   std::vector<Member> members_;
+  std::optional<std::string> only_;  // the wanted member
 
   FamilyRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletRun ancestor);
   bool has_daughters() const { return run_.dp.break_up == BreakUp::daughters; }
   FamilyPoint point_of(const Eigen::Array2d& displacement, double time) const;
+  FamilyPoint place_of_failure(const RunResult& result) const;
+  bool is_followed(const std::string& path) const;
+  template <class Work>
+  bool succeeds(const Work& work);
   void end_present();
   void cut_present();
   bool begin_next();
