@@ -30,7 +30,8 @@ END_WORDS = {"clogged": "clogged", "flowing": "still moving", "passed": "passed 
 def with_families(groups: Groups, source: AnyPath) -> list[Group]:
     found = [group for group in groups.members if group.get("families")]
     if not found:
-        raise UserError(f"no droplet of {source} has daughters; run the sweep with break-up=daughters and break-up-neck")
+        raise UserError(f"no droplet of {source} has daughters; "
+                        "run the sweep with break-up=daughters and break-up-neck")
     return found
 
 
@@ -49,6 +50,7 @@ def outlet_of(members: Sequence[Group], asked: float | None) -> float:
             return asked
         raise UserError(f"invalid --outlet={asked:g} (no droplet reached it, or it is no line of clogfit) "
                         f"try one of {', '.join(f'{distance:g}' for distance in known)}")
+
     def is_known(distance: float) -> bool:
         lines = [line_at(group, distance) for group in members]
         return all(line and line["not_known"] <= MOST_UNKNOWN for line in lines)
@@ -87,15 +89,16 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
     style.label(share, r"distance from the release $x/\sigma$", "share of the area that passes")
     style.label(number, r"distance from the release $x/\sigma$", "droplets that pass, per droplet")
     sizes.set_ylim(bottom=0)
-    style.label(sizes, r"diameter $d/\sigma$", rf"droplets per droplet at ${outlet:g}\,\sigma$, in classes of {width:g}")
+    style.label(sizes, r"diameter $d/\sigma$",
+                rf"droplets per droplet at ${outlet:g}\,\sigma$, in classes of {width:g}")
     if any(groups.label_of(group) for group in members):
         sizes.legend(frameon=False)
     if length := groups.laboratory.get("length_mm"):
         add_scale(sizes, "top", length, "diameter [mm]")
     unknown = [line["not_known"] for group in members if (line := line_at(group, outlet))]
     style.notes_of_panels(figure, [
-        "bars: intervals from resampled released droplets; a droplet passes when it, or one from which it descends, first "
-        "crosses the line",
+        "bars: intervals from resampled released droplets; a droplet passes when it, or one from which it descends, "
+        "first crosses the line",
         f"at {outlet:g}σ the fate of at most {100 * max(unknown, default=0):.2g} % of the area is not known"])
     return figure
 
@@ -110,12 +113,20 @@ def order_of(paths: Sequence[str]) -> dict[str, float]:
     return heights
 
 
-def draw_family(droplets: pandas.DataFrame, task: int, source: AnyPath, groups: Groups) -> Figure:
-    """Draws the droplets of one family as bars from birth to end. @throws UserError  if the run has no family"""
+def family_of(droplets: pandas.DataFrame, task: int, source: AnyPath) -> pandas.DataFrame:
+    """The droplets of one run. @throws UserError  if the run has no family"""
     family = droplets[droplets.task == task]
     if family.empty:
-        raise UserError(f"task {task} of {source} has no family that has ended; "
-                        f"{'its tasks with one are ' + ', '.join(map(str, sorted(set(droplets.task))[:20])) if len(droplets) else 'run the sweep with break-up=daughters'}")
+        known = sorted(set(droplets.task))
+        remedy = (f"its tasks with one are {', '.join(map(str, known[:20]))}" if known
+                  else "run the sweep with break-up=daughters")
+        raise UserError(f"task {task} of {source} has no family that has ended; {remedy}")
+    return family
+
+
+def draw_family(droplets: pandas.DataFrame, task: int, source: AnyPath, groups: Groups) -> Figure:
+    """Draws the droplets of one family as bars from birth to end. @throws UserError  if the run has no family"""
+    family = family_of(droplets, task, source)
     heights = order_of(list(family.path))
     figure, axes = style.subplots(figsize=(7.6, 1.6 + 0.45 * (max(heights.values()) - min(heights.values()) + 1)))
     for member in family.itertuples():
@@ -129,12 +140,12 @@ def draw_family(droplets: pandas.DataFrame, task: int, source: AnyPath, groups: 
             for part in "01":
                 axes.plot([end, end], [height, heights[member.path + part]], color="0.6", linewidth=0.8, zorder=0)
     axes.set_xlim(min(0.0, family.birth_distance.min()), 1.06 * family.end_distance.max())
-    axes.set_ylim(min(heights.values()) - 0.7, max(heights.values()) + 0.7)
+    axes.set_ylim(min(heights.values()) - 1.3, max(heights.values()) + 0.7)  # The legend is below the bars.
     axes.set_yticks([])
     handles = [Rectangle((0, 0), 1, 1, facecolor=END_COLOURS[status]) for status in END_COLOURS
                if status in set(family.status)]
     axes.legend(handles, [END_WORDS[status] for status in END_COLOURS if status in set(family.status)], frameon=False,
-                fontsize=8, loc="lower right")
+                fontsize=8, loc="lower right", ncols=len(handles))
     axes.set_xlabel(r"displacement along the flow $r/\sigma$")
     if length := groups.laboratory.get("length_mm"):
         add_scale(axes, "top", length, LABORATORY["length"])
