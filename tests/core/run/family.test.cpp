@@ -115,7 +115,8 @@ TEST(Family, OutlivesADaughterWhoseRunFails) {
 TEST(Family, RepeatsOneMember) {
   const RunParameters run = soft_run(1);
   const auto walls = walls_of(run);
-  for (const Member& member : finished(run).members()) {
+  const std::vector<Member> members = finished(run).members();
+  for (const Member& member : members) {
     const std::optional<Member> again = FamilyRun(run, walls).member(member.path);
     ASSERT_TRUE(again) << member.path;
     expect_equal({*again}, {member});
