@@ -18,7 +18,7 @@ fi
 errors=OFF
 if [ "${WARNINGS:-}" = errors ]; then errors=ON; fi
 cmake --preset "$preset" -DCLOG_TESTS=ON -DCLOG_HANDBOOK=$handbook -DCMAKE_COMPILE_WARNING_AS_ERROR=$errors
-# Tests wait for mpirun and timers, so two at a time on each core finish soonest.
+# Tests wait for mpirun and timers, so three at a time on each core finish soonest.
 TIMEFORMAT='%R s, processor time %U s'
 time cmake --build --preset "$preset"
-time ctest --preset "$preset" --parallel $((2 * $(nproc))) "${part[@]}" "$@"
+time ctest --preset "$preset" --parallel $((3 * $(nproc))) "${part[@]}" "$@"

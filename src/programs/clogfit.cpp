@@ -19,6 +19,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/results/distance_file.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/group_table.hpp"
 #include "clog/results/merger.hpp"

@@ -17,6 +17,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/results/comparison.hpp"
+#include "clog/results/distance_file.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/merger.hpp"
 #include "file_command.hpp"

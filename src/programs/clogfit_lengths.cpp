@@ -11,6 +11,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/distance_file.hpp"
 #include "clog/results/distance_table.hpp"
 #include "laboratory_option.hpp"
 

@@ -15,7 +15,7 @@
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/wording.hpp"
-#include "clog/results/distance_table.hpp"
+#include "clog/results/distance_file.hpp"
 #include "clog/sweep/keys.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -71,7 +71,7 @@ void refuse_entry(const std::string& cell, const std::string& name, const std::s
 /// @param around_unit  what may begin the unit
 std::string result_name(const std::string& cell, const char* around_unit) {
   const std::string without_unit = console::trimmed(cell.substr(0, cell.find_first_of(around_unit)));
-  std::string name = column_name(console::in_lower_case(without_unit));
+  std::string name = label_key(console::in_lower_case(without_unit));
   std::ranges::replace(name, ' ', '_');
   return name;
 }
@@ -258,9 +258,8 @@ void hint_at_lone_droplets(const DistanceTable& table) {
 /// Whether the label is a quantity that was set before the run: a key, or a column of the laboratory.
 bool is_quantity(const std::string& label) {
   return label == "diameter" || label == "angle" ||
-         std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) {
-           return column_name(key.name) == column_name(label);
-         });
+         std::ranges::any_of(sweep::keys(),
+                             [&](const sweep::Key& key) { return label_key(key.name) == label_key(label); });
 }
 
 /// Names columns each of whose values has only clogged, or only moving droplets. If half of the droplets or

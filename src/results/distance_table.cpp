@@ -20,7 +20,7 @@ namespace clog::results {
 namespace {
 
 bool has_label(const std::vector<std::string>& labels, const std::string& name) {
-  return std::ranges::find(labels, column_name(name), column_name) != labels.end();
+  return std::ranges::find(labels, label_key(name), label_key) != labels.end();
 }
 
 std::optional<double> number_in(const Value& value) {
@@ -72,7 +72,7 @@ struct Match {
 Match match_of(const DistanceTable& here, const DistanceTable& there) {
   Match match{.columns = here.labels, .common = {}, .only_there = {}};
   for (std::size_t i = 0; i < there.labels.size(); ++i) {
-    const auto same = std::ranges::find(here.labels, column_name(there.labels[i]), column_name);
+    const auto same = std::ranges::find(here.labels, label_key(there.labels[i]), label_key);
     if (same != here.labels.end()) {
       match.common.emplace_back(same - here.labels.begin(), i);
     } else {
@@ -95,7 +95,7 @@ void append_unmatched(Comparisons& comparisons, const DistanceTable& table,
 
 }  // namespace
 
-std::string column_name(std::string label) {
+std::string label_key(std::string label) {
   std::ranges::replace(label, '-', '_');
   return label;
 }
@@ -128,7 +128,7 @@ DistanceTable counted_from(double from, DistanceTable table) {
 }
 
 std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const std::string& label) {
-  const auto found = std::ranges::find(table.labels, column_name(label), column_name);
+  const auto found = std::ranges::find(table.labels, label_key(label), label_key);
   if (found == table.labels.end())
     throw Error(
         fmt::format("invalid --by={} (no column of {}, besides distance and clogged); its columns are {}",

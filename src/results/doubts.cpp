@@ -1,4 +1,4 @@
-#include "doubts.hpp"
+#include "clog/results/doubts.hpp"
 
 #include <fmt/core.h>
 
@@ -9,6 +9,7 @@
 
 #include "clog/core/parameters/contact_angle.hpp"
 #include "clog/core/polygon/wetting/contact_line.hpp"
+#include "clog/results/groups.hpp"
 #include "clog/sweep/row_limits.hpp"
 
 namespace clog::results {

@@ -1,3 +1,5 @@
+#include "group_notes.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -21,6 +21,7 @@
 #include "clog/core/tools/number_text.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/keys.hpp"
+#include "group_notes.hpp"
 #include "result_columns.hpp"
 #include "value_json.hpp"
 
@@ -143,7 +144,7 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
         (varies[shown.size()] && !is_automatic_everywhere && !group_of_only_model(*column, groups)) ||
         (column->get(first) != Value() && is_of(scene_of(run).gap_key)) || is_stiffness);
   }
-  // Columns from which automatic values follow come first.
+  // Automatic values that depend on one another come first, each after those on which it depends.
   std::vector<std::size_t> order(shown.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [](std::size_t i) {

@@ -21,7 +21,6 @@
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
-#include "doubts.hpp"
 #include "passages.hpp"
 
 namespace clog::results {
@@ -78,7 +77,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
 }
 
 /// See observation_of().
-std::optional<Ending> counted(const sweep::RunRow& run, Ending ending) {
+std::optional<Ending> ending_if_counted(const sweep::RunRow& run, Ending ending) {
   if (!is_device(run.parameters)) return ending;
   if (run.contacts.number == 0) return std::nullopt;
   if (sweep::is_known(run.contacts.number)) ending.distance -= run.contacts.first_distance;
@@ -237,7 +236,7 @@ struct Tally {
 void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
   const Ending from_release = ending_of(run, group.dwell);
   if (run.steps > 0) group.dwells_known_from = later(group.dwells_known_from, run.dwells.known_from);
-  const std::optional<Ending> ending = counted(run, from_release);
+  const std::optional<Ending> ending = ending_if_counted(run, from_release);
   group.num_interrupted += sweep::is_unfinished(run.status) && !from_release.is_clog;
   if (is_device(run.parameters)) {
     const double begin = beginning_of_way(run.parameters.obstacles, run.release[0]);
@@ -326,7 +325,8 @@ bool is_observed(const sweep::RunRow& run) {
 }
 
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run) {
-  const std::optional<Ending> ending = counted(run, ending_of(run, std::numeric_limits<double>::infinity()));
+  const std::optional<Ending> ending =
+      ending_if_counted(run, ending_of(run, std::numeric_limits<double>::infinity()));
   return ending ? std::optional(fit::Observation{ending->distance, ending->is_clog}) : std::nullopt;
 }
 

@@ -281,7 +281,7 @@ store::SweepFile read_together(const std::vector<std::string>& paths) {
   try {
     RunList runs;
     for (const Part& part : parts) add_runs(part, runs);
-    config = number_tasks(runs, merged.table);
+    if (!runs.empty()) config = number_tasks(runs, merged.table);
   } catch (const Error& error) {  // a config is from a version with other keys, or two contradict each other
     say_unread(joined(paths), "read together without their settings", error);
   }

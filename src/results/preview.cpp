@@ -43,14 +43,14 @@ struct Preview {
   }
 };
 
-void print(Preview& part, PreviewFormat format) {
-  part.json["text"] = part.text;
-  std::cout << (format == PreviewFormat::json ? console::json_text(part.json, -1) : part.text);
+void print(Preview& preview, PreviewFormat format) {
+  preview.json["text"] = preview.text;
+  std::cout << (format == PreviewFormat::json ? console::json_text(preview.json, -1) : preview.text);
 }
 
 /// Prints the text of a preview that a signal or a failure ended early.
-void print_incomplete(const Preview& part, PreviewFormat format) {
-  if (format == PreviewFormat::text) std::cout << part.text;
+void print_incomplete(const Preview& preview, PreviewFormat format) {
+  if (format == PreviewFormat::text) std::cout << preview.text;
 }
 
 /// The columns that differ between tasks.
@@ -73,7 +73,7 @@ std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
   return varying;
 }
 
-void add_task(Preview& part, const sweep::Plan& plan, std::int64_t task,
+void add_task(Preview& preview, const sweep::Plan& plan, std::int64_t task,
               const std::vector<const sweep::Column*>& columns) {
   const sweep::RunRow row = sweep::describe(plan.task(task));
   std::string line = std::to_string(task);
@@ -84,8 +84,8 @@ void add_task(Preview& part, const sweep::Plan& plan, std::int64_t task,
     line += ' ' + (text.empty() ? "-" : text);
     json[column->name] = json_of(value);
   }
-  part.line("{}", line);
-  part.json["tasks"].push_back(std::move(json));
+  preview.line("{}", line);
+  preview.json["tasks"].push_back(std::move(json));
 }
 
 /// Adds seconds to a cost; negative seconds subtract.
@@ -108,46 +108,46 @@ Json hours_json(const SweepCost& cost) {
   return {{"expected", cost.expected / hour}, {"lower", cost.lower / hour}, {"upper", cost.upper / hour}};
 }
 
-void add_expected(Preview& part, const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
+void add_expected(Preview& preview, const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
   const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
-  part.line(
+  preview.line(
       "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner",
       cost.bound / hour, us_per_step);
   const auto num_finished =
       std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
   const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
-  part.line("# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them ended",
-            cost.expected / hour, cost.lower / hour, cost.upper / hour, count_text(num_runs, "run"),
-            sample.source, num_finished);
-  part.json["at_most"] = cost.bound / hour;
-  part.json["us_per_step"] = us_per_step;
-  part.json.update(hours_json(cost));
-  part.json["sample"] = {{"runs", num_runs}, {"ended", num_finished}, {"source", sample.source}};
+  preview.line("# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them ended",
+               cost.expected / hour, cost.lower / hour, cost.upper / hour, count_text(num_runs, "run"),
+               sample.source, num_finished);
+  preview.json["at_most"] = cost.bound / hour;
+  preview.json["us_per_step"] = us_per_step;
+  preview.json.update(hours_json(cost));
+  preview.json["sample"] = {{"runs", num_runs}, {"ended", num_finished}, {"source", sample.source}};
 }
 
 /// @param cost  of the whole plan
-void add_left(Preview& part, const sweep::Plan& plan, const std::string& output, const Stored& stored,
-              const SweepCost& cost) {
+void add_left(Preview& preview, const sweep::Plan& plan, const std::string& output,
+              const StoredSample& stored, const SweepCost& cost) {
   const SweepCost left = plus(cost, -stored.seconds);
-  part.line("# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})",
-            console::printable(output), stored.num_done, count_text(plan.num_runs(), "run"),
-            plan.num_runs() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
-  part.json["left"] = hours_json(left);
+  preview.line("# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})",
+               console::printable(output), stored.num_done, count_text(plan.num_runs(), "run"),
+               plan.num_runs() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
+  preview.json["left"] = hours_json(left);
 }
 
 /// Warns before the runs about clogging lengths below an obstacle spacing, which clogfit would doubt (`v`).
-void add_short_lengths(Preview& part, const Sample& sample) {
+void add_short_lengths(Preview& preview, const Sample& sample) {
   constexpr std::int64_t fewest = 3;
   constexpr std::int64_t one_in =
       4;  // with a clogging length of five spacings, one distance in six would be below one spacing
   if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
-  part.line(
+  preview.line(
       "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "
       "reflect the release void, not clogging (v); {}",
       sample.num_short, count_text(sample.num_clogged, "run"), sample.spacing,
       sample.has_own_circles ? "the share of droplets that got past says more"
                              : "give fewer obstacles, e.g. the default obstacle-density");
-  part.json["short_lengths"] = {
+  preview.json["short_lengths"] = {
       {"runs", sample.num_short}, {"clogged", sample.num_clogged}, {"obstacle_spacing", sample.spacing}};
 }
 
@@ -158,11 +158,11 @@ SweepCost times(SweepCost cost, double factor) {
 
 /// Limits of the cost of a sweep that adds seeds.
 /// @param cost  of the sweep's first round
-void add_rounds(Preview& part, const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
+void add_rounds(Preview& preview, const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
   const std::int64_t needed = rule.clogs_needed(), most = rule.most_seeds();
-  part.line("# this is the first round: +-{} % needs {} per parameter set",
-            sweep::shortest(100 * rule.precision()), count_text(needed, "clog"));
-  if (most < needed) part.line("# --most-seeds={} ends it before that; give {} or more", most, needed);
+  preview.line("# this is the first round: +-{} % needs {} per parameter set",
+               sweep::shortest(100 * rule.precision()), count_text(needed, "clog"));
+  if (most < needed) preview.line("# --most-seeds={} ends it before that; give {} or more", most, needed);
   const auto of_rounds = [&](std::int64_t num_seeds) {
     return times(cost, static_cast<double>(num_seeds) / static_cast<double>(first_seeds));
   };
@@ -172,7 +172,7 @@ void add_rounds(Preview& part, const SeedRule& rule, std::int64_t first_seeds, c
   };
   const std::int64_t fewest = std::clamp(needed, first_seeds, most);
   const SweepCost least = of_rounds(fewest), largest = of_rounds(most);
-  part.line(
+  preview.line(
       "# all rounds: {} each if every run clogs, {}; {} each (--most-seeds) if few do, {}, at most {:.3g}",
       count_text(fewest, "seed"), expected(least), count_text(most, "seed"), expected(largest),
       largest.bound / hour);
@@ -180,11 +180,11 @@ void add_rounds(Preview& part, const SeedRule& rule, std::int64_t first_seeds, c
   if_all_clog["seeds"] = fewest;
   if_few_clog["seeds"] = most;
   if_few_clog["at_most"] = largest.bound / hour;
-  part.json["all_rounds"] = {
+  preview.json["all_rounds"] = {
       {"clogs_needed", needed}, {"if_all_clog", if_all_clog}, {"if_few_clog", if_few_clog}};
 }
 
-void add_lattices(Preview& part, const sweep::Plan& plan) {
+void add_lattices(Preview& preview, const sweep::Plan& plan) {
   constexpr std::size_t most_lines = 10;
   std::vector<std::string> lines;
   for (std::int64_t group = 0; group < plan.num_groups() && lines.size() <= most_lines; ++group) {
@@ -194,14 +194,14 @@ void add_lattices(Preview& part, const sweep::Plan& plan) {
     if (std::ranges::find(lines, line) != lines.end()) continue;
     lines.push_back(std::move(line));
     if (lines.size() <= most_lines)
-      part.json["lattices"].push_back({{"pitch", obstacles.spacing()},
-                                       {"row_spacing", row_spacing(obstacles)},
-                                       {"angle", obstacles.lattice_angle},
-                                       {"length", obstacles.period().along()},
-                                       {"box", obstacles.box}});
+      preview.json["lattices"].push_back({{"pitch", obstacles.spacing()},
+                                          {"row_spacing", row_spacing(obstacles)},
+                                          {"angle", obstacles.lattice_angle},
+                                          {"length", obstacles.period().along()},
+                                          {"box", obstacles.box}});
   }
   if (lines.size() > most_lines) lines.back() = "more lattices: not listed";
-  for (const std::string& line : lines) part.line("# {}", line);
+  for (const std::string& line : lines) preview.line("# {}", line);
 }
 
 std::string seeds_in_words(const sweep::Plan& plan) {
@@ -220,29 +220,29 @@ void print_tasks(const sweep::Plan& plan, PreviewFormat format) {
   constexpr std::int64_t lines_at_an_end = 20;
   const std::int64_t num_skipped = plan.size() > most_lines ? plan.size() - 2 * lines_at_an_end : 0;
   const std::vector<const sweep::Column*> columns = varying_columns(plan);
-  Preview part{.text = "# task",
-               .json = {{"number_of_tasks", plan.size()},
-                        {"parameter_sets", plan.num_groups()},
-                        {"runs", plan.num_runs()},
-                        {"tasks", Json::array()}}};
-  for (const sweep::Column* column : columns) part.text += ' ' + column->name;
-  part.text += '\n';
+  Preview preview{.text = "# task",
+                  .json = {{"number_of_tasks", plan.size()},
+                           {"parameter_sets", plan.num_groups()},
+                           {"runs", plan.num_runs()},
+                           {"tasks", Json::array()}}};
+  for (const sweep::Column* column : columns) preview.text += ' ' + column->name;
+  preview.text += '\n';
   for (std::int64_t task = 0; task < plan.size(); ++task) {
-    if (console::stop_signalled()) return print_incomplete(part, format);
+    if (console::stop_signalled()) return print_incomplete(preview, format);
     if (num_skipped > 0 && task == lines_at_an_end) {
-      part.line("# ... {} more ...", num_skipped);
+      preview.line("# ... {} more ...", num_skipped);
       task += num_skipped;
     }
-    add_task(part, plan, task, columns);
+    add_task(preview, plan, task, columns);
   }
-  part.line("# {}: {}, {} each", count_text(plan.size(), "task"),
-            count_text(plan.num_groups(), "parameter set"), seeds_in_words(plan));
+  preview.line("# {}: {}, {} each", count_text(plan.size(), "task"),
+               count_text(plan.num_groups(), "parameter set"), seeds_in_words(plan));
   if (const std::int64_t number = plan.size() - plan.num_runs(); number > 0)
-    part.line("# {} the same {} in another laboratory, which {} once",
-              number == 1 ? "1 task is" : fmt::format("{} tasks are", number), number == 1 ? "run" : "runs",
-              number == 1 ? "is computed" : "are computed");
-  add_lattices(part, plan);
-  print(part, format);
+    preview.line("# {} the same {} in another laboratory, which {} once",
+                 number == 1 ? "1 task is" : fmt::format("{} tasks are", number),
+                 number == 1 ? "run" : "runs", number == 1 ? "is computed" : "are computed");
+  add_lattices(preview, plan);
+  print(preview, format);
 }
 
 void print_refusal(const Refusal& refusal) {
@@ -254,19 +254,19 @@ void print_refusal(const Refusal& refusal) {
 
 int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
                const sweep::JobFactory& jobs, PreviewFormat format) {
-  Preview part{.text = "", .json = {}};
+  Preview preview{.text = "", .json = {}};
   for (const std::string& words : sweep::limits_of_results(plan))
-    part.line("# {}", console::printable(words));
-  const Stored stored = stored_runs(plan, output);
+    preview.line("# {}", console::printable(words));
+  const StoredSample stored = stored_runs(plan, output);
   const bool is_done = stored.num_done == plan.num_runs();
-  part.json = {{"runs", plan.num_runs()}, {"finished", stored.num_done}, {"spent", stored.seconds / hour}};
+  preview.json = {{"runs", plan.num_runs()}, {"finished", stored.num_done}, {"spent", stored.seconds / hour}};
   if (is_done)
-    part.line("# {} has all {}, which took {:.2g} core-hours{}", console::printable(output),
-              count_text(plan.num_runs(), "run"), stored.seconds / hour,
-              rule ? "" : "; nothing is left to do");
+    preview.line("# {} has all {}, which took {:.2g} core-hours{}", console::printable(output),
+                 count_text(plan.num_runs(), "run"), stored.seconds / hour,
+                 rule ? "" : "; nothing is left to do");
   if (!is_done || rule) {
     const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan, jobs);
-    if (console::stop_signalled() || sample.costs.empty()) print_incomplete(part, format);
+    if (console::stop_signalled() || sample.costs.empty()) print_incomplete(preview, format);
     if (console::stop_signalled()) return console::exit_incomplete;
     if (sample.costs.empty()) {
       console::say("clogsweep: no trial run can start; the first one: " + sample.failure);
@@ -275,12 +275,12 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
     const SweepCost of_trials = tried_cost(plan, sample);
     const SweepCost cost =
         stored.knows_enough() ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : of_trials;
-    if (!is_done) add_short_lengths(part, sample);
-    if (!is_done) add_expected(part, plan, sample, cost);
-    if (!is_done && stored.seconds > 0) add_left(part, plan, output, stored, cost);
-    if (rule) add_rounds(part, *rule, plan.size() / plan.num_groups(), with_expected(of_trials, cost));
+    if (!is_done) add_short_lengths(preview, sample);
+    if (!is_done) add_expected(preview, plan, sample, cost);
+    if (!is_done && stored.seconds > 0) add_left(preview, plan, output, stored, cost);
+    if (rule) add_rounds(preview, *rule, plan.size() / plan.num_groups(), with_expected(of_trials, cost));
   }
-  print(part, format);
+  print(preview, format);
   return console::exit_success;
 }
 

@@ -42,8 +42,4 @@ std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, d
 /// Columns of diameter and tilt, if the groups differ in them.
 std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups);
 
-/// Explains below the table its letters, stars and columns, and counts the runs that it lacks.
-/// @param named  whether each of group_columns() is a column of the table or a word above it
-std::string notes_below(const std::vector<Group>& groups, const std::vector<bool>& named);
-
 }  // namespace clog::results

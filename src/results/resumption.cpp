@@ -1,3 +1,5 @@
+#include "resumption.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -6,10 +8,9 @@
 
 #include "clog/core/tools/error.hpp"
 #include "clog/results/growth.hpp"
-#include "clog/results/latest_rows.hpp"
 #include "clog/results/stored_sweep.hpp"
-#include "clog/results/sweep_runs.hpp"
 #include "clog/sweep/row_check.hpp"
+#include "latest_rows.hpp"
 
 namespace clog::results {
 namespace {
@@ -88,7 +89,7 @@ void find_runs(Known& known, std::int64_t num_tasks, const sweep::Plan& plan, Sw
     if (const auto other = others.find(run); other != others.end() && known.contains(other->second))
       found = std::move(known.extract(other->second).mapped());
     else if (const auto shared = in_plan.find(run); shared != in_plan.end())
-      found = copy_of(*shared->second);
+      found = copy_without_costs(*shared->second);
     else
       continue;
     found->row.parameters.laboratory = row.parameters.laboratory;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <iterator>
 #include <limits>
@@ -180,6 +181,7 @@ Texts values_of(const std::vector<const Texts*>& all, std::size_t place) {
 }  // namespace
 
 sweep::Settings RunList::settings() const {
+  assert(!empty());
   std::vector<const Texts*> all;
   all.reserve(sets_.size());
   for (const ParameterSet& set : sets_) all.push_back(&set.texts);

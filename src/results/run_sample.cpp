@@ -71,8 +71,8 @@ void Sample::count(const sweep::RunRow& row) {
   has_own_circles |= row.parameters.obstacles.layout == ObstacleLayout::file;
 }
 
-Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
-  Stored stored;
+StoredSample stored_runs(const sweep::Plan& plan, const std::string& path) {
+  StoredSample stored;
   stored.sample.source = "in " + path;
   if (path.empty() || !std::filesystem::exists(path)) return stored;
   std::unordered_multimap<std::string, sweep::RunRow> rows;

@@ -26,7 +26,7 @@ struct Sample {
 };
 
 /// The sample of runs in the sweep's own file; empty without a file.
-struct Stored {
+struct StoredSample {
   Sample sample;
   std::vector<WaitingRuns> waiting;  ///< runs of each parameter set that are not in the sample
   std::int64_t num_done = 0;         ///< tasks that need not run again
@@ -35,7 +35,7 @@ struct Stored {
   static constexpr std::size_t fewest_runs = 5;
   bool knows_enough() const { return sample.costs.size() >= fewest_runs; }
 };
-Stored stored_runs(const sweep::Plan& plan, const std::string& path);
+StoredSample stored_runs(const sweep::Plan& plan, const std::string& path);
 
 /// Runs short pieces of some tasks. The jobs may be computed by another process, which answers between
 /// slices of its work; a job that takes too long, such as a release that does not come to rest, is dropped.

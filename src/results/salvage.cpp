@@ -11,9 +11,9 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/wording.hpp"
 #include "clog/results/growth.hpp"
-#include "clog/results/latest_rows.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/row_check.hpp"
+#include "latest_rows.hpp"
 
 namespace clog::results {
 namespace {
@@ -63,13 +63,20 @@ Salvage salvage(const std::string& path) {
   std::vector<store::Journal::Entry> records = records_of(path, found);
   std::vector<sweep::RunRow> rows;
   for (const LatestRow& run : latest_rows(found.table.rows, records)) {
-    interrupt_if_running(rows.emplace_back(run.row()));
-    if (!run.record) continue;
-    const bool is_unfinished = sweep::is_unfinished(run.record->row.status);
-    if (!is_unfinished && !run.was_final()) ++found.num_from_journal;
-    if (is_unfinished && !run.record->snapshot.empty()) found.snapshots.push_back(std::move(*run.record));
+    const bool is_unfinished = sweep::is_unfinished(run.row().status);
+    if (run.record && !is_unfinished && !run.was_final()) ++found.num_from_journal;
+    // Rows are moved, because a large sweep has memory for each row just once; that of a snapshot is copied.
+    if (run.record && is_unfinished && !run.record->snapshot.empty()) {
+      rows.push_back(run.row());
+      found.snapshots.push_back(std::move(*run.record));
+    } else {
+      rows.push_back(std::move(run.row()));
+    }
+    interrupt_if_running(rows.back());
   }
   std::ranges::stable_sort(rows, {}, &sweep::RunRow::task);
+  std::ranges::stable_sort(found.snapshots, {},
+                           [](const store::Journal::Entry& one) { return one.row.task; });
   found.table.rows = std::move(rows);
   return found;
 }

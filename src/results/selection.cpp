@@ -13,10 +13,10 @@
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/split.hpp"
 #include "clog/core/tools/wording.hpp"
-#include "clog/results/latest_rows.hpp"
 #include "clog/results/merger.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "latest_rows.hpp"
 
 namespace clog::results {
 namespace {

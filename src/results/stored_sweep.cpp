@@ -10,9 +10,9 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/core/tools/wording.hpp"
-#include "clog/results/latest_rows.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "latest_rows.hpp"
 
 namespace clog::results {
 namespace {

@@ -41,6 +41,11 @@ SweepFiles::SweepFiles(std::string path, const sweep::Plan& plan, store::Provena
   set_attribute(provenance_, "sessions", latest_lines(session));
 }
 
+SweepFiles::Earlier SweepFiles::take_earlier() {
+  store::SweepFile table = read_table();  // before the records, which are refused without a table
+  return {std::move(table), take_records()};
+}
+
 store::SweepFile SweepFiles::read_table() {
   if (!place_.exists()) return {};
   stamp_ = place_.stamp();
@@ -126,7 +131,7 @@ void SweepFiles::tick() {
 /// distance.
 sweep::RunRow SweepFiles::published(sweep::RunRow row) const {
   if (!runs_.tries_again(row)) return row;
-  restart(row);
+  reset_to_release(row);
   ++row.attempt;
   return row;
 }

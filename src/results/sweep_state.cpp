@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
+#include "resumption.hpp"
 
 namespace clog::results {
 
@@ -15,9 +16,9 @@ SweepState::SweepState(std::string path, const sweep::Plan& plan, const sweep::S
       runs_{.attempts = attempts},
       num_wanted_(num_wanted),
       files_(std::move(path), plan, std::move(provenance), runs_) {
-  store::SweepFile table = files_.read_table();
+  auto [table, records] = files_.take_earlier();
   num_faulty_ =
-      adopt({files_.path(), plan, settings, num_wanted}, std::move(table), files_.take_records(), runs_);
+      adopt({files_.path(), plan, settings, num_wanted}, std::move(table), std::move(records), runs_);
   for (const std::int64_t task : tasks_begun()) past_[task].take_costs(row(task));
   for (std::int64_t task = 0; task < std::min(num_wanted, plan.size()); ++task) request(task);
   files_.begin_session();
@@ -46,7 +47,7 @@ void SweepState::request(std::int64_t task) {
 
 /// Gives a task the row of its twin.
 SweepState::Entry& SweepState::copy_to(std::int64_t task, const Entry& twin) {
-  std::unique_ptr<Entry> copy = copy_of(twin);
+  std::unique_ptr<Entry> copy = copy_without_costs(twin);
   copy->row.parameters.laboratory = plan_->task(task).laboratory;
   copy->row.task = task;
   std::unique_ptr<Entry>& run = runs_.place_of(task);
@@ -150,7 +151,7 @@ void SweepState::withdraw_failure(std::int64_t task) {
   Entry& entry = *runs_.by_task.at(task);
   {
     const std::lock_guard lock(runs_.changing);
-    restart(entry.row);  // the broken rank's result does not count as progress
+    reset_to_release(entry.row);  // the broken rank's result does not count as progress
   }
   files_.write_down(entry);
   pass_on(entry);

@@ -171,13 +171,13 @@ class Damage : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-std::string counted_rows(std::size_t number) { return count_text(static_cast<std::int64_t>(number), "row"); }
+std::string rows_text(std::size_t number) { return count_text(static_cast<std::int64_t>(number), "row"); }
 
 /// Length of a dataset; rejects impossible sizes. @throws Damage
 std::size_t num_rows_of(hid_t dataset, std::size_t bytes_each) {
   const std::optional<hsize_t> number = length_of(dataset);
   if (!number) throw Damage("its table has another shape than it was given");
-  if (!can_hold(dataset, *number, bytes_each)) throw Damage("its table cannot hold " + counted_rows(*number));
+  if (!can_hold(dataset, *number, bytes_each)) throw Damage("its table cannot hold " + rows_text(*number));
   return *number;
 }
 
@@ -194,7 +194,7 @@ CheckSums read_check_sums(hid_t file, std::size_t num_rows) {
   if (!dataset.valid()) throw Damage("the rows' checksums are gone");
   const Type type(H5Dget_type(dataset));
   if (H5Tequal(type, H5T_NATIVE_UINT32) <= 0 || num_rows_of(dataset, sizeof(std::uint32_t)) != num_rows)
-    throw Damage("the rows' checksums are not those of its " + counted_rows(num_rows));
+    throw Damage("the rows' checksums are not those of its " + rows_text(num_rows));
   CheckSums sums(num_rows);
   if (num_rows > 0 &&
       H5Dread(dataset, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, without_library_check(), sums.data()) < 0)

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # tests/gates/run.sh [--all] [GATE...]: installs what is missing, then looks at the sources by every gate, or those named.
-# clang-tidy looks at what changed, with --all at everything. Exit code 1: a gate has found something. See README.md.
+# clang++ and clang-tidy look at what changed, with --all at everything. Exit code 1: a gate has found something. See README.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 every=(format width spelling codespell phrases ages scripts types docs warnings tidy)
-limits=(--changed --most 40)
+limits=(--changed --most 20)
 if [ "${1:-}" = --all ]; then
   limits=()
   shift
@@ -26,8 +26,7 @@ look() {
     ages) python3 tests/gates/ages.py ;;
     docs) docs/build.sh && /usr/bin/python3 tests/gates/site.py build/docs/html ;;
     width | spelling | phrases) python3 "tests/gates/$1.py" ;;
-    warnings) python3 tests/gates/clang.py warnings ;;
-    tidy) python3 tests/gates/clang.py tidy "${limits[@]}" ;;
+    warnings | tidy) python3 tests/gates/clang.py "$1" "${limits[@]}" ;;
   esac
 }
 

@@ -412,7 +412,7 @@ class Looks(Analysis):
         self.assertTrue({1, 3, 5, 7} < {row["task"] for row in report.examples(rows, 6)})
 
     def test_one_is_no_plural(self):
-        self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
+        self.assertEqual([rounded.count_text(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
         self.assertEqual([labels.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
                          ["1 run per point", "4 runs per point", "1 to 3 runs per point"])
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")

@@ -16,6 +16,7 @@
 
 #include "../store/support.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/results/merger.hpp"
 #include "clog/results/salvage.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
@@ -229,6 +230,26 @@ TEST_F(SweepStateTest, ComputesARunAgainWhoseRowHoldsWhatCannotBe) {
   EXPECT_EQ(state.num_faulty(), 1);
   EXPECT_EQ(state.tasks_left(), std::vector<std::int64_t>{1});
   EXPECT_EQ(store::read_sweep(path()).rows.size(), 1u);
+}
+
+TEST_F(SweepStateTest, KeepsTheFirstRowOfARunThatItsTableRepeats) {
+  {
+    SweepState state = open();
+    state.start(0, 0);
+    state.report(report(state, 0, RunStatus::clogged, 2));
+    state.finish();
+  }
+  store::SweepFile file = store::read_sweep(path());
+  file.rows.push_back(file.rows.front());
+  file.rows.back().distance = 3;
+  std::erase_if(file.provenance, [](const auto& attribute) {
+    return attribute.first == "kind" || attribute.first == "format_version" ||
+           attribute.first == "num_columns";
+  });
+  store::publish(path(), file.rows, file.provenance);
+  SweepState state = open();
+  EXPECT_EQ(state.row(0).distance, 2);
+  EXPECT_EQ(store::read_sweep(path()).rows.size(), 1U);
 }
 
 TEST_F(SweepStateTest, RefusesARowOfAnotherRunThanTheTasks) {
@@ -513,6 +534,13 @@ TEST_F(SweepStateTest, KeepsAResultOfTheTableWhateverTheJournalLacks) {
   SweepState state = open();
   EXPECT_EQ(state.tasks_left(), std::vector<std::int64_t>{1});
   EXPECT_EQ(state.row(0).distance, 4);
+}
+
+TEST_F(SweepStateTest, TablesWithoutRunsCanBeReadTogether) {
+  const std::string other = (folder_ / "other.h5").string();
+  store::publish(path(), {}, {});
+  store::publish(other, {}, {});
+  EXPECT_TRUE(read_together({path(), other}).rows.empty());
 }
 
 }  // namespace

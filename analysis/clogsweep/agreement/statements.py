@@ -84,10 +84,10 @@ STATEMENTS = [
     Statement(
         "appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on",
         SURFACE,
-        "a mesh is smooth if the droplet passes and its profile ripples by at most 0.02 v_t about that of the finest"
-        " mesh; the coarsest smooth mesh has 128",
+        "from 128 vertices on, droplets pass and profiles ripple by at most 0.02 v_t about that of the finest mesh;"
+        " those of coarser meshes ripple more, qualitatively also less",
         passages.profiles_are_smooth, ("B1",),
-        {IN_KIND: "another mesh is the coarsest smooth one"}),
+        {IN_KIND: "the profiles of coarse meshes are smooth up to where the droplet stops"}),
     Statement(
         "4.1", "Γ_exp = 0.57, 5.80, 3.47 for the three tilts and diameters",
         FORMULA,

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from ..tools.rounded import counted
+from ..tools.rounded import count_text
 from .profiles import Profile, at
 from .simulation import APPROACH
 
@@ -40,7 +40,7 @@ def refuse_upstream(missed: Numbers, simulated: Profile) -> None:
         start = simulated.h[0]
         remedy = ("write the simulated frames in the order of time" if simulated.h[-1] < start else
                   f"start the simulation farther upstream, start={missed.min() - APPROACH:.4g}, or delete these frames")
-        raise UserError(f"{counted(len(missed), 'measured frame')}, down to h = {missed.min():.6g}, {'is' if len(missed) == 1 else 'are'} upstream of the simulated start at h = {start:.6g}; {remedy}")
+        raise UserError(f"{count_text(len(missed), 'measured frame')}, down to h = {missed.min():.6g}, {'is' if len(missed) == 1 else 'are'} upstream of the simulated start at h = {start:.6g}; {remedy}")
 
 
 def shape_residuals(measured: Profile, simulated: Profile) -> Numbers:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ..tools.errors import ProgramFailed
 from ..tools.progress import StatusLine, readable_duration
-from ..tools.rounded import counted
+from ..tools.rounded import count_text
 from . import search
 from .profiles import Profile
 from .search import Calibration
@@ -35,7 +35,7 @@ class Progress:
         trials = f", {self.num_ended}/{len(self.best)} trials done" if len(self.best) > 1 else ""
         worst = max(self.best)
         best = f", {self.text_of(worst)}" if math.isfinite(worst[0]) else ""
-        return f"{counted(self.num_simulations, 'simulation')}{trials}{best}, {readable_duration(seconds)} so far"
+        return f"{count_text(self.num_simulations, 'simulation')}{trials}{best}, {readable_duration(seconds)} so far"
 
     @staticmethod
     def text_of(best: tuple[float, float, float]) -> str:

@@ -133,7 +133,7 @@ def description(device: shapes.Device, drawing: shapes.Drawing, metres: float) -
     else:
         edge = "between its walls" if len(device.walls) == 2 else "no edge is drawn"
     micrometres = device.droplet_micrometres
-    words = [f"{rounded.counted(device.num_posts(), 'post')}, "
+    words = [f"{rounded.count_text(device.num_posts(), 'post')}, "
              f"device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):
         diameters = device.circles[:, 2]
@@ -157,13 +157,13 @@ def description(device: shapes.Device, drawing: shapes.Drawing, metres: float) -
 
 def summary(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> str:
     """One line: what was read, joined, united, ignored, skipped and scaled."""
-    words = [f"read {rounded.counted(drawing.objects, 'object')}", *drawing.notes]
+    words = [f"read {rounded.count_text(drawing.objects, 'object')}", *drawing.notes]
     if len(drawing.layers) > 1:
         words.append("layers " + ", ".join(f"{name} ({count})" for name, count in sorted(drawing.layers.items())))
     for (number, result), verb in ((drawing.joined, "closed"), (drawing.united, "that touch united")):
-        what = rounded.counted(number, "line" if verb == "closed" else "outline")
-        words += [f"{what} {verb} into {rounded.counted(result, 'outline')}"] if number else []
-    words += [f"{rounded.counted(drawing.duplicates, 'duplicate')} ignored"] if drawing.duplicates else []
+        what = rounded.count_text(number, "line" if verb == "closed" else "outline")
+        words += [f"{what} {verb} into {rounded.count_text(result, 'outline')}"] if number else []
+    words += [f"{rounded.count_text(drawing.duplicates, 'duplicate')} ignored"] if drawing.duplicates else []
     words += [f"{drawing.outside} outside the region"] if drawing.outside else []
     own = metres * float(np.hypot(*np.diff(drawing.from_own([(0, 0), (1, 0)]), axis=0)[0]))
     scale = (f"1 {'pixel' if drawing.is_picture else 'unit'} is {own / shapes.METRES['um']:.6g} um, "
@@ -191,9 +191,10 @@ def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[s
     micrometres = device.droplet_micrometres
     are_cut = found.farthest > 2 * found.corner
     advice = "; thin parts are cut off, and a smaller --corner keeps more of them" if are_cut else ""
-    return found.device, [f"{rounded.counted(number, 'post')} not round (red lines) "
-                          f"as {rounded.counted(len(found.device.circles) - len(device.circles), 'circle')} in rows: "
-                          f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), "
+    return found.device, [f"{rounded.count_text(number, 'post')} not round (red lines) "
+                          f"as {rounded.count_text(len(found.device.circles) - len(device.circles), 'circle')} "
+                          f"in rows: corners lose {found.farthest:.2g} at most "
+                          f"({found.farthest * micrometres:.2g} um), "
                           f"walls are rough by {found.roughness:.2g}, in droplet diameters{advice}"]
 
 
@@ -204,7 +205,7 @@ def named_slender(device: shapes.Device) -> list[str]:
                        for x, y in (outline.mean(axis=0) * device.droplet_micrometres for outline in found[:3]))
     more = f", and {len(found) - 3} more" if len(found) > 3 else ""
     are = "is" if len(found) == 1 else "are"
-    return [f"{rounded.counted(len(found), 'post')} {are} at least three times as long as wide, at {places}{more}; "
+    return [f"{rounded.count_text(len(found), 'post')} {are} at least three times as long as wide, at {places}{more}; "
             "if this is a scale bar or a label, cut it away by --region or in the drawing"] if found else []
 
 
@@ -250,8 +251,8 @@ def body() -> int:
     if device.others:
         uneven = "; if the picture is lit unevenly, even it out and make it black and white first"
         light = uneven if drawing.is_picture else ""
-        raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} "
-                        f"not round, red in the picture; no {table} "
+        raise UserError(f"{rounded.count_text(len(device.others), 'post')} of "
+                        f"{len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
                         "was written. Use --as-rows for rows of circles along their outlines, "
                         "--as-circles for circles of the same area, or a larger --tolerance; "
                         "cut scale bars and labels away with --region or in the drawing, "
@@ -259,14 +260,14 @@ def body() -> int:
     if touching := device.overlaps():
         x, y, _ = device.circles[touching[0][0]]
         micrometres = device.droplet_micrometres
-        raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, "
+        raise UserError(f"{rounded.count_text(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, "
                         f"y={y:.4g} in droplet diameters "
                         f"({x * micrometres:.5g} um, {y * micrometres:.5g} um from the device's lower left corner); "
                         f"no {table} was written. {remedy_of_touching(device, touching, arguments.holes)}")
     centres = device.circles[:, :2]
     outside = device.circles[np.any((centres < 0) | (centres >= (device.length, device.width)), axis=1)]
     if len(outside):
-        raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; "
+        raise UserError(f"{rounded.count_text(len(outside), 'post')} with the centre outside the edge of the device; "
                         f"no {table} was written. Draw a wider edge, cut these posts away, or choose another --region")
     with outputs.replaced(table) as fresh:
         fresh.write_text(shapes.csv_of(device, printable(f"{arguments.drawing.name}, by clogsweep")), encoding="utf-8")

@@ -72,7 +72,7 @@ def body() -> int:
         table = critical_angle.table_of(rows, parameters)
         for words, statuses in [("failed", ["failed"]), ("are unfinished", UNFINISHED)]:
             if number := rows["status"].isin(statuses).sum():
-                print(f"{number} of {rounded.counted(len(rows), 'run')} {words} and do not count", file=sys.stderr)
+                print(f"{number} of {rounded.count_text(len(rows), 'run')} {words} and do not count", file=sys.stderr)
         ends = sorted({rows["max_time"].min(), rows["max_time"].max()})
         spans = " within max-time=" + " to ".join(f"{span:.4g}" for span in ends)
     if arguments.format == "csv":

@@ -42,13 +42,13 @@ def text(answer: dict[str, Any], crossing: list[float]) -> str:
     for curve in answer["curves"]:
         shared = " ".join(parameter_text(name, value) for name, value in curve["shared"].items())
         num_clogs = sum(point["clogs"] for point in curve["points"])
-        lines += ["", f"{shared}{': ' if shared else ''}through {rounded.counted(len(curve['points']), 'point')} with {rounded.counted(num_clogs, 'clog')}"]
+        lines += ["", f"{shared}{': ' if shared else ''}through {rounded.count_text(len(curve['points']), 'point')} with {rounded.count_text(num_clogs, 'clog')}"]
         if curve["common_obstacles"]:
             lines.append("  (points share seeds and so obstacles: their errors are correlated, the band takes them for independent)")
         num_runs = sum(point["runs"] for point in curve["points"])
         if num_failed := curve["failed"]:
-            lines.append(f"  ({num_failed} of {rounded.counted(num_runs, 'run')} failed, and count as not clogged up to sound_distance)")
-        lines += [f"  ({number} of {rounded.counted(len(curve['points']), 'point')}: {answer['doubts'][doubt]})" for doubt, number in curve["doubts"].items()]
+            lines.append(f"  ({num_failed} of {rounded.count_text(num_runs, 'run')} failed, and count as not clogged up to sound_distance)")
+        lines += [f"  ({number} of {rounded.count_text(len(curve['points']), 'point')}: {answer['doubts'][doubt]})" for doubt, number in curve["doubts"].items()]
         lines += [*_peak(answer, curve), *_crossings(answer, curve, crossing), "", *_places(answer, curve)]
     if answer["excluded"]:
         lines += ["", "in no curve:"]

@@ -226,7 +226,7 @@ def leave_out_beyond(drawing: Drawing, page: Box) -> None:
     if beyond:
         own = drawing.to_own(np.vstack(beyond))
         (left, low), (right, high) = own.min(axis=0), own.max(axis=0)
-        drawing.notes.append(f"{rounded.counted(len(beyond), 'object')} wholly outside the page left out, "
+        drawing.notes.append(f"{rounded.count_text(len(beyond), 'object')} wholly outside the page left out, "
                              f"at x={left:.6g} to {right:.6g}, y={low:.6g} to {high:.6g} "
                              "(enlarge the page if they belong to the device)")
 

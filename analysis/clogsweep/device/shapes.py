@@ -72,7 +72,7 @@ class Drawing:
 
     def layers_in_words(self) -> str:
         """The layers and their numbers of objects, such as "; it has layer 1/0 with 55 objects, 2/0 with 1 object"."""
-        named = ", ".join(f"{name} with {rounded.counted(count, 'object')}"
+        named = ", ".join(f"{name} with {rounded.count_text(count, 'object')}"
                           for name, count in sorted(self.layers.items()))
         return f"; its layers are {named}" if named else ""
 
@@ -306,15 +306,15 @@ def leave_out_centres_beyond(drawing: Drawing, frame: Box,
 
 def left_out(number: int, name: str) -> str:
     """@param number  of posts with their centre outside a region, @param name  of the region"""
-    return f"{rounded.counted(number, 'post')} left out that {'reaches' if number == 1 else 'reach'} into the {name} from outside"
+    return f"{rounded.count_text(number, 'post')} left out that {'reaches' if number == 1 else 'reach'} into the {name} from outside"
 
 
 def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
     """@param outlines  that will not become posts as they are. @throws UserError  if round posts became part of them"""
     number = sum(posts for outline, posts in drawing.swallowing if walls.is_one_of(outline, outlines))
     if number:
-        raise UserError(f"{rounded.counted(number, 'round post')} would vanish, because posts cross a larger outline, "
-                        "such as the rim of a reservoir, and were united with it; "
+        raise UserError(f"{rounded.count_text(number, 'round post')} would vanish, because posts cross a larger "
+                        "outline, such as the rim of a reservoir, and were united with it; "
                         "choose the layer of the posts by --layer, "
                         f"or a part of the drawing by --region{drawing.layers_in_words()}")
 
@@ -342,7 +342,7 @@ def refuse_lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) 
         # The borders between several pieces of one area may cut holes, which are then not among these.
         least = "at least " if edge is None and len(drawing.outlines) > 1 else ""
         kind = "round hole" if all(fitted_circle(hole, True, tolerance) for hole in holes) else "hole"
-        raise UserError(f"the drawing has {least}{rounded.counted(len(holes), kind)}, which would not be posts; "
+        raise UserError(f"the drawing has {least}{rounded.count_text(len(holes), kind)}, which would not be posts; "
                         "--holes reads holes as posts, and --layer or --region leave them out"
                         f"{drawing.layers_in_words()}")
 
@@ -363,7 +363,7 @@ def refuse_indented(edge: Numbers | None, scale: float, droplet: float) -> None:
         number = int((is_deep & ~np.roll(is_deep, 1)).sum()) or 1
         micrometres = droplet / METRES["um"]
         x, y = scale * (points[np.argmax(depths)] - low) * micrometres
-        raise UserError(f"the device's edge is no rectangle: it has {rounded.counted(number, 'indentation')}, "
+        raise UserError(f"the device's edge is no rectangle: it has {rounded.count_text(number, 'indentation')}, "
                         f"the deepest of {depths.max():.3g} droplet diameters "
                         f"({depths.max() * micrometres:.4g} um) at x={x:.5g} um, y={y:.5g} um from the edge's lower "
                         "left corner; the material there, such as posts at the edge, would be lost. "

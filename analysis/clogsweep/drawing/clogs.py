@@ -49,7 +49,7 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
 def tell_left_out(rows: Records) -> None:
     """Prints how many clogs of_polygons() leaves out, if any."""
     if number := int((are_clogged_polygons(rows) & are_passages(rows)).sum()):
-        print(f"left out: {rounded.counted(number, 'clog')} in a channel or on a wall; "
+        print(f"left out: {rounded.count_text(number, 'clog')} in a channel or on a wall; "
               "clogfit report draws them, after clogsweep select "
               "has made a sweep of one kind", file=sys.stderr)
 
@@ -140,7 +140,7 @@ class Clogs(Sequence[Clog]):
         return iter(self._clogs)
 
     def __repr__(self) -> str:
-        return f"<{rounded.counted(len(self), 'clog')}: {', '.join(f'task {clog.task} {clog.mechanism}' for clog in self)}>"
+        return f"<{rounded.count_text(len(self), 'clog')}: {', '.join(f'task {clog.task} {clog.mechanism}' for clog in self)}>"
 
     def picture(self) -> style.Picture:
         tasks = ", ".join(str(clog.task) for clog in self)
@@ -207,7 +207,7 @@ def title(row: np.void) -> str:
     return (rf"{mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$, task {row['task']}" "\n"
             rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, "
             rf"seed {row['seed']}" "\n"
-            f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'arc')}")
+            f"{wrapped}, {rounded.count_text(row['num_gaps'], 'gap')}, {rounded.count_text(row['num_arcs'], 'arc')}")
 
 
 def view_of(clogs: Sequence[Clog]) -> Numbers:

@@ -351,7 +351,7 @@ def draw_map(axes: Axes, place: Place, shares: Numbers) -> AxesImage:
 def draw_scale(figure: Figure, panels: Sequence[Axes], drawn: AxesImage, parts: Sequence[Part]) -> None:
     """Draws the colour bar of the maps."""
     counts = {len(part.mapped) for part in parts if part.mapped}
-    most = ("" if len(counts) == 1 else "up to ") + rounded.counted(max(counts), "droplet")
+    most = ("" if len(counts) == 1 else "up to ") + rounded.count_text(max(counts), "droplet")
     scale = figure.colorbar(drawn, ax=list(panels), pad=0.01, fraction=0.05)
     scale.set_label(f"share of {most}{' each' if len(parts) > 1 else ''}\nthat passed over it", fontsize=8)
 

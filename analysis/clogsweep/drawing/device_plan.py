@@ -117,7 +117,7 @@ def understood(device: Device, source: str) -> Figure:
     axes.set_xlabel(r"$x/\sigma$, along the flow")
     micrometres = device.droplet_micrometres
     red = f", {len(device.others)} not round (red)" if device.others else ""
-    style.caption(axes, rf"{literal(source)}: {rounded.counted(device.num_posts(), 'post')}{red}, "
+    style.caption(axes, rf"{literal(source)}: {rounded.count_text(device.num_posts(), 'post')}{red}, "
                         rf"$\sigma$ = {micrometres:.4g} µm, "
                         rf"device {device.length * micrometres:.5g} µm x {device.width * micrometres:.5g} µm")
     return figure

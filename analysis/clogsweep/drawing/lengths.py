@@ -73,9 +73,9 @@ def failure_notes(groups: Collection[Group], noun: str = "point") -> list[str]:
     """States how many points or curves have unfinished or failed runs."""
     lines = []
     if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
-        lines.append(f"incomplete: runs of {num_incomplete} of {rounded.counted(len(groups), noun)} are unfinished")
+        lines.append(f"incomplete: runs of {num_incomplete} of {rounded.count_text(len(groups), noun)} are unfinished")
     if num_failed := sum((group.get("failed") or 0) > 0 for group in groups):
-        lines.append(f"failed: some runs of {num_failed} of {rounded.counted(len(groups), noun)} "
+        lines.append(f"failed: some runs of {num_failed} of {rounded.count_text(len(groups), noun)} "
                      "(not clogged up to their last check)")
     return lines
 
@@ -84,7 +84,7 @@ def automatic_notes(groups: Groups) -> list[str]:
     """States how many points are at an automatic value of the abscissa, which the user has not chosen."""
     number = groups.num_automatic(groups.abscissa) if groups.varies(groups.abscissa) else 0
     key = groups.abscissa_key().replace("_", " ")
-    return [f"automatic: the {key} of {number} of {rounded.counted(len(groups.members), 'point')} follows "
+    return [f"automatic: the {key} of {number} of {rounded.count_text(len(groups.members), 'point')} follows "
             "from other parameters"] if number else []
 
 

@@ -12,7 +12,7 @@ from ..labels import AXES, axis_label, is_number, parameter_label
 from ..reading import fits
 from ..tools.errors import UserError
 from ..tools.hints import Group
-from ..tools.rounded import counted
+from ..tools.rounded import count_text
 from ..tools.texts import literal
 from . import lengths
 
@@ -88,9 +88,9 @@ def note_lines(answer: dict[str, Any]) -> list[str]:
     unknown = sum(one["ratio_lower"] is None for one in answer["comparisons"])
     identical = sum(one["interval"] == "identical" for one in answer["comparisons"])
     if unknown > identical:
-        lines.append(f"{counted(unknown - identical, 'point')} without clogs on one side: no ratio")
+        lines.append(f"{count_text(unknown - identical, 'point')} without clogs on one side: no ratio")
     if identical:
-        lines.append(f"{counted(identical, 'point')} with identical runs on both sides: no interval")
+        lines.append(f"{count_text(identical, 'point')} with identical runs on both sides: no interval")
     return lines + lengths.flaw_notes([flaws_of(one) for one in answer["comparisons"]])
 
 

@@ -98,4 +98,4 @@ def axis_label(column: Column) -> str:
 
 def runs_a_point(groups: Collection[Group]) -> str:
     counts = sorted({group["runs"] for group in groups})
-    return f"{rounded.counted(counts[0], 'run')} per point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs per point"
+    return f"{rounded.count_text(counts[0], 'run')} per point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs per point"

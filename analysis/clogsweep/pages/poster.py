@@ -63,7 +63,7 @@ def counted(rows: pandas.DataFrame, words: dict[str, str]) -> str:
     """The number of runs with each status, in words. @param rows  the sweep's table; @param words  better words for
     some statuses"""
     counts = ", ".join(f"{count} {words.get(status, status)}" for status, count in rows.status.value_counts().items())
-    return f"{rounded.counted(len(rows), 'run')}: {counts}"
+    return f"{rounded.count_text(len(rows), 'run')}: {counts}"
 
 
 def shown_curves(groups: Groups) -> list[tuple[str, list[Group]]]:

@@ -135,12 +135,12 @@ def length(group: Group) -> str:
 def speed(group: Group) -> str:
     """The speed of all runs, which is distance divided by time. If only some runs went far enough to have a speed, the
     mean speed of these runs follows."""
-    runs = rounded.counted(group["relative_speed_runs"], "run")
+    runs = rounded.count_text(group["relative_speed_runs"], "run")
     mean = None if group["relative_speed"] is None else rounded.with_error(group["relative_speed"], group["relative_speed_error"])
     if group.get(lengths.OF_ALL_RUNS) is None:
         return f"{mean} ({runs})" if mean else "-"
     of_all = rounded.with_error(group[lengths.OF_ALL_RUNS], group[f"{lengths.OF_ALL_RUNS}_error"])
-    return f"{of_all} (mean of {group['relative_speed_runs']} of {rounded.counted(group['runs'], 'run')}: {mean or '-'})" \
+    return f"{of_all} (mean of {group['relative_speed_runs']} of {rounded.count_text(group['runs'], 'run')}: {mean or '-'})" \
         if group["relative_speed_runs"] < group["runs"] else f"{of_all} ({runs})"
 
 
@@ -261,7 +261,7 @@ def doubts(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) ->
     words = []
     for name in dict.fromkeys(name for group in groups.members for name in style.doubts(group)):
         count = sum(name in style.doubts(group) for group in groups.members)
-        of_points = f"{count} of {rounded.counted(len(groups.members), 'point')}"
+        of_points = f"{count} of {rounded.count_text(len(groups.members), 'point')}"
         words.append(f"<li class=doubt>{of_points}: {html.escape(sentences[name])}</li>")
     failed = rows[rows.status == "failed"]
     for _, row in failed.head(5).iterrows():
@@ -313,7 +313,7 @@ def progress_of(status: dict[str, Any]) -> str:
     numbers = {name: status[name] for name in ("clogged", "at_rest", "broken", "passed", "flowing", "failed")}
     numbers["running" if status["alive"] else "interrupted"] = status["unfinished"]
     counts = ", ".join(f"{number} {name.replace('_', ' ')}" for name, number in numbers.items() if number)
-    return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
+    return f"{status['finished']} of {rounded.count_text(status['runs'], 'run')} finished ({counts})"
 
 
 LENGTHS = ("&lambda; is the distance that a fraction 1/e of the droplets travels without clogging, "
@@ -325,7 +325,7 @@ def label_of_length(groups: Groups, group: Group) -> str:
     """The title of a point. Browsers show it even without a script."""
     known = "" if speed(group) == "-" else f", speed {speed(group)}"
     return (f"{valued(groups, group)}: "
-            f"length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
+            f"length {length(group)}{known}, {group['clogs']} of {rounded.count_text(group['runs'], 'run')} clogged")
 
 
 def valued(groups: Groups, group: Group) -> str:
@@ -445,7 +445,7 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
     light, dark = charts.colours()
     return string.Template(part("html")).substitute(
         name=html.escape(printable(name)), style=part("css"), light=light, dark=dark, script=part("js"),
-        progress=html.escape(f"{progress}, {rounded.counted(len(groups.members), 'point')}"),
+        progress=html.escape(f"{progress}, {rounded.count_text(len(groups.members), 'point')}"),
         meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
         sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),
         provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about),

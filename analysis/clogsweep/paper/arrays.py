@@ -372,7 +372,7 @@ def survival(runner: Runner) -> Plate:
         raise UserError(f"no run has clogged in {runner.place_of('survival')}; raise max-time or seeds")
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     draw_band(axes, group)
-    survival_curve.draw(axes, group, style.COLOURS[0], f"estimate from {rounded.counted(group['runs'], 'run')}",
+    survival_curve.draw(axes, group, style.COLOURS[0], f"estimate from {rounded.count_text(group['runs'], 'run')}",
                         f"end of a run that still flowed ({len(group['censored_distances'])} of {group['runs']})")
     end = survival_curve.longest_way(group)
     length, lower, upper = (group[f"clogging_length{bound}"] for bound in ("", "_lower", "_upper"))

@@ -10,7 +10,7 @@ import numpy as np
 import pandas
 
 from ..tools.errors import UserError
-from ..tools.rounded import counted
+from ..tools.rounded import count_text
 from .driver import HOUR, UNFINISHED, Line, number_text
 from .membership import Membership, Values
 
@@ -148,7 +148,7 @@ class AngleSearch:
         return "; ".join(filter(None, [
             self.end, text, again and f"they follow them again at {again}",
             unknown and f"runs were too short to say at {unknown} (max-time, clogs or failures)",
-            num_failed and f"{num_failed} of {counted(len(runs), 'run')} failed and do not count"]))
+            num_failed and f"{num_failed} of {count_text(len(runs), 'run')} failed and do not count"]))
 
     def costs(self, hours_per_run: float) -> list[str]:
         """States the cost of the rounds, for --dry-run. @param hours_per_run  of the first round"""

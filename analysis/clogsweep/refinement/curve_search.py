@@ -12,7 +12,7 @@ from ..curves import features
 from ..curves.model import Curve, Points, fit_curve
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from ..tools.rounded import counted
+from ..tools.rounded import count_text
 from . import choice, goals
 from .driver import HOUR, UNFINISHED, Line, number_text
 from .goals import Goal
@@ -134,9 +134,9 @@ class CurveSearch:
         without = known.runs[known.runs["clogs"] == 0]
         share = without["work"].sum() / known.runs["work"].sum()
         if share > COSTLY:
-            words.append(f"{counted(int(without['runs'].sum()), 'run')} ({100 * share:.0f} % of the computing time) did not clog, at "
+            words.append(f"{count_text(int(without['runs'].sum()), 'run')} ({100 * share:.0f} % of the computing time) did not clog, at "
                          f"{', '.join(map(self._named, without.index))}: they only show that lambda is larger")
-        failures = [f"{self._named(values)} ({one.failed} of {counted(one.runs, 'run')})"
+        failures = [f"{self._named(values)} ({one.failed} of {count_text(one.runs, 'run')})"
                     for values, one in zip(known.runs.index, known.runs.itertuples()) if one.failed]
         return "; ".join([*words, f"failed: {', '.join(failures)}"] if failures else words)
 

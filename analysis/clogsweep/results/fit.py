@@ -54,7 +54,7 @@ class Fit:
 
     def _counted(self) -> str:
         groups = self.output["groups"]
-        return f"{rounded.counted(sum(group.get('runs', 1) for group in groups), 'run')} in {rounded.counted(len(groups), 'group')}"
+        return f"{rounded.count_text(sum(group.get('runs', 1) for group in groups), 'run')} in {rounded.count_text(len(groups), 'group')}"
 
     @property
     def groups(self) -> pandas.DataFrame:

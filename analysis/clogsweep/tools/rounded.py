@@ -27,7 +27,7 @@ def plain(value: float | None, figures: int = LEAST_FIGURES) -> str:
     return f"{rounded:.{max(0, figures - 1 - exponent(rounded))}f}"
 
 
-def counted(number: int, noun: str) -> str:
+def count_text(number: int, noun: str) -> str:
     """A number and its noun, such as 1 run, 2 runs."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 

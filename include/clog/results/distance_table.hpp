@@ -32,15 +32,6 @@ struct DistanceTable {
 std::optional<double> diameter_of(const DistanceTable& table, const DistanceGroup& group,
                                   std::optional<double> sigma_mm);
 
-/// Whether this is the name of a text table, not of a sweep's file.
-bool is_distance_table(const std::string& path);
-/// Reads a table with the columns `distance [UNIT]` and `clogged` (1 or 0, yes or no, true or false). Rows
-/// with the same values in all other columns form a group. The columns `diameter [UNIT]` and `angle [deg]`
-/// become the labels `diameter` [mm] and `angle` [degrees]. Prints a hint if each droplet is a group of its
-/// own.
-/// @param taken  names of results, which no other column may have, in any case and with any unit
-/// @throws Error that names file and line
-DistanceTable read_distances(const std::string& path, const std::vector<std::string>& taken);
 /// The table with distances that count from `from` on, in the table's unit; droplets that ended before are
 /// left out, and their number is printed (left truncation, see group_runs()).
 DistanceTable counted_from(double from, DistanceTable table);
@@ -60,7 +51,7 @@ DistanceTable distances_of(const Side& side, const ScalesByLaboratory& scales,
 /// equal_distances are known.
 std::vector<Flaws> flaws_of(const DistanceTable& table);
 /// The name of a label as a column of a sweep.
-std::string column_name(std::string label);
+std::string label_key(std::string label);
 /// Labels of a table that the other table lacks.
 std::vector<std::string> unmatched_labels(const DistanceTable& table, const DistanceTable& other);
 

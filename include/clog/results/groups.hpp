@@ -15,80 +15,13 @@
 #include "clog/fit/mean_speed.hpp"
 #include "clog/fit/migration.hpp"
 #include "clog/fit/survival.hpp"
+#include "clog/results/doubts.hpp"
 #include "clog/results/families.hpp"
 #include "clog/sweep/columns.hpp"
 
 namespace clog::results {
 
 inline constexpr int enough_clogs = 5;  ///< with fewer clogs, the interval is wide and its coverage varies
-
-/// Doubts about a group's clogging length; doubt_texts explains each.
-enum class Doubt {
-  few_clogs,
-  not_exponential,
-  equal_distances,
-  censored_by_time,
-  incomplete,
-  damaged,
-  held_by_mesh,
-  near_friction_limit,
-  wetted_mesh,
-  array_repeats,
-  met_none,
-  below_spacing,
-  failures_matter,
-  untested
-};
-/// The texts of a doubt: a letter for tables, a word for files, and a sentence for readers.
-struct DoubtText {
-  Doubt doubt;
-  char letter;
-  const char* word;
-  const char* sentence;
-};
-inline constexpr DoubtText doubt_texts[] = {
-    {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more droplets are needed"},
-    {Doubt::not_exponential, 'x', "not_exponential",
-     "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
-     "not describe these runs"},
-    {Doubt::equal_distances, 'e', "equal_distances",
-     "half of the clogs or more are at the distance of another one: copies of a droplet count as independent "
-     "droplets, so the interval is too narrow (distances may also have been rounded coarsely)"},
-    {Doubt::censored_by_time, 't', "censored_by_time",
-     "runs ended by max-time: lambda is right only if slow droplets clog as often per distance as fast ones"},
-    {Doubt::incomplete, 'i', "incomplete",
-     "some runs are in progress or interrupted (they count as not clogged so far), or failed at an unknown "
-     "distance (excluded)"},
-    {Doubt::damaged, 'd', "damaged", "damaged rows were excluded (clogsweep verify lists them)"},
-    {Doubt::held_by_mesh, 'm', "held_by_mesh",
-     "in a tenth of the clogs or more, the polygon's edges are so long that its corners may hold the droplet "
-     "(corner pinning, column mesh_hold): use more vertices"},
-    {Doubt::near_friction_limit, 'h', "near_friction_limit",
-     "more than 15 % of the clogs hold by almost all of the friction that there is (column friction_use): a "
-     "finer mesh could let these droplets go; compare with twice the vertices"},
-    {Doubt::wetted_mesh, 'w', "wetted_mesh",
-     "the droplet wets walls (contact angle below 180 degrees): the mesh decides where some droplets clog; "
-     "compare with twice the vertices"},
-    {Doubt::array_repeats, 'r', "array_repeats",
-     "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
-     "again"},
-    {Doubt::met_none, 'n', "met_none",
-     "droplets met no obstacle: lambda includes the way that they sank freely; lambda_met is that of the "
-     "others, from their first obstacle on"},
-    {Doubt::below_spacing, 'v', "below_spacing",
-     "lambda is below one obstacle spacing (diameter + gap): it reflects the release void, not how often "
-     "gaps clog droplets (for user-supplied circles the spacing is 1/sqrt(circles per area))"},
-    {Doubt::failures_matter, 'c', "failures_matter",
-     "lambda would be below its interval if all failed runs had clogged where they failed"},
-    {Doubt::untested, 'u', "untested",
-     "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
-     "cross themselves or obstacles (handbook, Which droplets are sound)"}};
-const DoubtText& text_of(Doubt doubt);
-/// The letters, the words with a space between them, and a legend: a blank line and a line for each different
-/// doubt, in the order of doubt_texts; empty without doubts.
-std::string letters_of(const std::vector<Doubt>& doubts);
-std::string words_of(const std::vector<Doubt>& doubts);
-std::string legend_of(const std::vector<Doubt>& doubts);
 
 /// The competing ways in which a run may end: the mechanism that holds a clog (`other`: none of the three),
 /// or the break-up of the droplet.

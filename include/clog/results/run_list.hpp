@@ -32,7 +32,7 @@ class RunList {
 
   bool empty() const { return sets_.empty(); }
   /// The settings of a sweep with exactly these runs. If the runs are the product of lists, the settings have
-  /// these lists, otherwise points. Values and points are in increasing order.
+  /// these lists, otherwise points. Values and points are in increasing order. The list must not be empty.
   sweep::Settings settings() const;
 
  private:

@@ -28,11 +28,15 @@ class SweepFiles {
 
   /// The path without symbolic links, for messages and readers.
   const std::string& path() const { return place_.path(); }
-  /// Reads the table, which is empty if there is none, and keeps its provenance and its circles.
-  /// @throws Error if it is not a sweep's, or has foreign objects
-  store::SweepFile read_table();
-  /// The records of the journal, the oldest first. @throws Error if there are records, but no table
-  std::vector<Entry> take_records();
+  /// What earlier sessions have left; empty if there were none.
+  struct Earlier {
+    store::SweepFile table;
+    std::vector<Entry> records;  ///< of the journal, the oldest first
+  };
+  /// Reads what earlier sessions have left, and keeps the provenance and the circles of the table.
+  /// @throws Error if the table is not a sweep's, or has foreign objects, or if there are records but no
+  /// table
+  Earlier take_earlier();
   std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
   /// Publishes the table for the first time.
   void begin_session();
@@ -85,6 +89,8 @@ class SweepFiles {
   std::optional<std::string> publish_to(const store::OutputPath& place, const std::string& stamp,
                                         const std::vector<const Entry*>& all,
                                         const store::Provenance& provenance) const;
+  store::SweepFile read_table();
+  std::vector<Entry> take_records();
   void publish();
   void publish_last();
   void begin_publication();

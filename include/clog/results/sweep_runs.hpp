@@ -4,12 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <vector>
 
 #include "clog/store/journal.hpp"
-#include "clog/store/run_table.hpp"
-#include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_row.hpp"
 
 namespace clog::results {
 
@@ -48,31 +46,17 @@ struct SweepRuns {
 };
 
 /// Resets a run to its release, except its parameters and its cost so far.
-inline void restart(sweep::RunRow& row) {
+inline void reset_to_release(sweep::RunRow& row) {
   RunResult nothing;
   nothing.status = RunStatus::interrupted;
   sweep::record(nothing, row);
 }
 
-/// A copy of a run, which costs nothing.
-inline std::unique_ptr<SweepRuns::Entry> copy_of(const SweepRuns::Entry& twin) {
+/// A copy of a run that has cost no time.
+inline std::unique_ptr<SweepRuns::Entry> copy_without_costs(const SweepRuns::Entry& twin) {
   auto copy = std::make_unique<SweepRuns::Entry>(twin);
   copy->row.wall_seconds = copy->row.processor_seconds = 0;
   return copy;
 }
-
-/// A sweep that may have earlier sessions.
-struct Resumption {
-  const std::string& path;
-  const sweep::Plan& plan;
-  const sweep::Settings& settings;
-  std::int64_t num_wanted;  ///< number of tasks, from the start of the plan, that are requested
-};
-
-/// Adopts the runs of the table and the journal of earlier sessions, and gives them their tasks. Returns the
-/// number of physically impossible rows, which are left out. @throws Error if the table or the journal
-/// belongs to another sweep
-std::int64_t adopt(const Resumption& sweep, store::SweepFile table,
-                   std::vector<store::Journal::Entry> records, SweepRuns& runs);
 
 }  // namespace clog::results

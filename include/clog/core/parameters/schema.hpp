@@ -66,7 +66,7 @@ struct Parameter {
   const ParameterScope* scope;
   const ParameterScope*
       automatic_in;  ///< runs in which the value, unless given, follows from other parameters
-  /// An automatic value may follow from the automatic values with smaller numbers above 0; 0: from none.
+  /// Rank among automatic values: each depends only on those of lower rank. 0: neither it nor others do.
   int automatic_order;
   ParameterRange range;  ///< the range, if the values are numbers
   bool has_own_column;   ///< false: the column describes other parameters as well
