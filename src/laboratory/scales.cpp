@@ -101,7 +101,8 @@ Scales scales_of(const Laboratory& lab) {
                 .line_tension_experiment = at.line_tension(),
                 .line_tension = lab.tension_ratio * at.line_tension(),
                 .terminal_speed = is_speed_known ? at.reduced_terminal_speed() : unknown,
-                .line_tension_of_cell = at.interfacial_tension * lab.thickness};
+                .line_tension_of_cell = at.interfacial_tension * lab.thickness,
+                .break_up_neck = lab.thickness / at.diameter};
   scales.capillary_number = units::droplet_mass * units::gravity / scales.line_tension;
   scales.sag = std::isnan(scales.line_tension) ? unknown : sag_on_wall(scales.line_tension);
   scales.wall_stiffness = wall_stiffness_of_sag(scales.sag);

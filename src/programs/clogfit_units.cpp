@@ -99,9 +99,12 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
       {"soft disk that sags as far on a flat wall", with_unit(scales.sag * scales.length / milli, "mm"),
        equals("E_w", scales.wall_stiffness)},
       {"capillary number at the terminal speed", "", equals("Ca", scales.capillary_number)}};
-  if (!std::isnan(lab.thickness))
+  if (!std::isnan(lab.thickness)) {
     lines.push_back({"line tension of the cell, tension times thickness",
                      with_unit(scales.line_tension_of_cell / (milli * milli), "uN"), ""});
+    lines.push_back({"neck that breaks, as wide as the cell is thick", with_unit(lab.thickness / milli, "mm"),
+                     equals("break-up-neck", scales.break_up_neck)});
+  }
   return lines;
 }
 
@@ -176,7 +179,8 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
           {"wall_stiffness", scales.wall_stiffness},
           {"terminal_speed", scales.terminal_speed},
           {"capillary_number", scales.capillary_number},
-          {"line_tension_of_cell_uN", scales.line_tension_of_cell / (milli * milli)}};
+          {"line_tension_of_cell_uN", scales.line_tension_of_cell / (milli * milli)},
+          {"break_up_neck", scales.break_up_neck}};
 }
 
 /// A line of the table of several droplets.

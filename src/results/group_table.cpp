@@ -320,6 +320,33 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
                      console::aligned(lines));
 }
 
+/// What became of the ancestors' area at some lines, with break-up=daughters.
+std::string table_of_families(const std::vector<Group>& groups, const std::vector<ResultColumn>& parameters,
+                              double confidence) {
+  std::vector<std::vector<std::string>> lines = {heads(parameters)};
+  for (const char* name :
+       {"x/sigma", "droplets", "mean d", "passed", "clogged", "small", "not known", "passing"})
+    lines[0].emplace_back(name);
+  lines[0].push_back(fmt::format("{:g} %", 100 * confidence));
+  for (const Group& group : groups)
+    for (const FamilyLine& line : group.families.lines) {
+      std::vector<std::string>& words = lines.emplace_back(cells(group, parameters));
+      words.push_back(fmt::format("{:g}", line.distance));
+      words.push_back(fmt::format("{:.2f}", line.passed.number));
+      words.push_back(std::isnan(line.passed.mean) ? "-" : fmt::format("{:.2f}", line.passed.mean));
+      for (const double area : {line.passed.area, line.clogged, line.small, line.not_known, line.passing})
+        words.push_back(fmt::format("{:.2f}", area));
+      words.push_back(std::isnan(line.interval.lower)
+                          ? "-"
+                          : fmt::format("{:.2f} .. {:.2f}", line.interval.lower, line.interval.upper));
+    }
+  if (lines.size() == 1) return "";
+  return fmt::format(
+      "\ndroplets per ancestor that passed x, their mean diameter, and shares of the ancestors' "
+      "area\n{}",
+      console::aligned(lines));
+}
+
 /// Defines a clog, if resting droplets count as clogged, too; otherwise returns an empty text.
 std::string definition_of_clogs(const std::vector<Group>& groups) {
   const double dwell = groups.front().dwell;
@@ -357,7 +384,7 @@ std::string text_of_kind(const std::vector<Group>& groups, double confidence, Sh
   std::vector<std::vector<std::string>> lines = {heads(columns)};
   for (const Group& group : groups) lines.push_back(cells(group, columns));
   return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, parameters.first(), confidence) +
-         notes_below(groups, named);
+         table_of_families(groups, parameters.first(), confidence) + notes_below(groups, named);
 }
 
 }  // namespace

@@ -345,6 +345,14 @@ std::vector<const sweep::Column*> pooled_columns(const std::string& keys) {
   return columns;
 }
 
+/// The families of the runs that are over and intact.
+static Families families_of(const std::vector<const sweep::RunRow*>& runs, double confidence) {
+  std::vector<std::vector<Member>> families;
+  for (const sweep::RunRow* run : runs)
+    if (!run->family.empty() && sweep::fault_of(*run).empty()) families.push_back(run->family);
+  return families_of(families, confidence);
+}
+
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance,
                               double dwell, std::span<const sweep::Column* const> pooled,
                               std::span<const double> lines) {
@@ -363,6 +371,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.are_runs_equal = fit::are_mostly_equal(tally.clogs.empty() ? tally.others : tally.clogs);
     fit_meetings(group, tally.meetings, confidence);
     if (is_device(run)) group.passages = passages_of(run, tally.arrivals, lines, confidence);
+    group.families = families_of(runs, confidence);
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(tally.speeds));
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(tally.travels));
     group.relative_speed_all = mean_speed_of_all(tally.travels_until_arrest, run.drag.terminal_speed);

@@ -20,6 +20,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/wording.hpp"
+#include "droplets.hpp"
 #include "hdf5.hpp"
 #include "laboratory_texts.hpp"
 #include "row_layout.hpp"
@@ -61,8 +62,11 @@ Space growing_space(std::size_t num_rows) {
   return Space(H5Screate_simple(1, &size, &unlimited));
 }
 
-/// Writes the table. @param laboratories  gets the checksums of all laboratories of the rows
-CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& laboratories) {
+/// Writes the table.
+/// @param laboratories  gets the checksums of all laboratories of the rows
+/// @param families  gets those of the rows
+CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& laboratories,
+                      std::vector<StoredFamily>& families) {
   const RowLayout layout = RowLayout::present();
   const Dataset table = write_dataset(file, runs_name, layout.type(), growing_space(rows.number), nullptr,
                                       checked_chunks(rows_per_chunk));
@@ -78,6 +82,7 @@ CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& labor
       sums.push_back(check_sum(place));
       if (const std::optional<LaboratoryText>& one = row.parameters.laboratory; one && !one->text().empty())
         laboratories.insert(one->check_sum());
+      if (!row.family.empty()) families.push_back({row.task, row.family});
     }
     if (H5Dwrite(table, layout.type(), space_of({number}), select_rows(table, first, number), H5P_DEFAULT,
                  packed.data()) < 0)
@@ -99,16 +104,19 @@ NamedCheckSum joint_check_sum(const CheckSums& sums) {
 
 void write_runs(hid_t file, const std::string& kind, const Rows& rows, const Provenance& provenance) {
   std::set<std::string> laboratories;
-  const CheckSums sums = write_table(file, rows, laboratories);
+  std::vector<StoredFamily> families;
+  const CheckSums sums = write_table(file, rows, laboratories, families);
   const Dataset list = write_dataset(file, sums_name, H5T_NATIVE_UINT32, growing_space(sums.size()),
                                      sums.data(), checked_chunks(rows_per_chunk));
   write_attribute(list, "meaning", "CRC-32, as of zlib, of the bytes of each row of /runs");
-  Provenance attributes = {{"kind", kind},
-                           {"format_version", format_version},
-                           {num_columns_name, std::to_string(sweep::columns().size())}};
+  Provenance attributes = {
+      {"kind", kind},
+      {"format_version", families.empty() ? format_version : format_version_with_droplets},
+      {num_columns_name, std::to_string(sweep::columns().size())}};
   attributes.insert(attributes.end(), provenance.begin(), provenance.end());
   write_attributes(file, joint_check_sum(sums), attributes);
   write_laboratories(file, laboratories);
+  write_droplets(file, families);
 }
 
 std::string library_version() {
@@ -130,7 +138,8 @@ std::optional<std::string> publish_sweep(const OutputPath& place, const std::str
 
 namespace {
 
-constexpr std::array<std::string_view, 3> readable_versions = {"9", "10", format_version};
+constexpr std::array<std::string_view, 4> readable_versions = {"9", "10", format_version,
+                                                               format_version_with_droplets};
 
 /// @throws Error if the open file has a format version that this program does not read
 void require_readable_version(hid_t file, const std::string& path) {
@@ -139,7 +148,7 @@ void require_readable_version(hid_t file, const std::string& path) {
     throw Error(fmt::format(
         "cannot read {} (format version {}, this program reads {} to {}); use the program that wrote it, or "
         "compute the rows anew",
-        path, version, readable_versions.front(), format_version));
+        path, version, readable_versions.front(), readable_versions.back()));
 }
 
 /// @throws Error if an open file is not one of our sweeps, or has a version that is not read
@@ -256,7 +265,7 @@ void add_attributes(hid_t object, const std::string& name, const std::set<std::s
 /// Objects and attributes that other programs have added. Those in the groups of circles and laboratories are
 /// damage.
 std::vector<std::string> foreign_objects(hid_t file) {
-  const std::set<std::string> known = {runs_name, sums_name, circles_name, laboratories_name};
+  const std::set<std::string> known = {runs_name, sums_name, circles_name, laboratories_name, droplets_name};
   std::vector<std::string> foreign;
   for (const std::string& name : names_in(file))
     if (!known.contains(name)) foreign.push_back('/' + name);
@@ -282,6 +291,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   const CheckSums sums = read_rows(file, found);
   compare_attributes(file, joint_check_sum(sums), found.whole.provenance, found.damage);
   read_circles(file, found.whole.circles, found.damage);
+  read_droplets(file, found.whole.rows, found.damage);
   read_laboratories(file, found.damage);
   if (seal != Seal::whole)
     found.is_refused_by_others = is_refused(file, runs_name) || is_refused(file, sums_name);

@@ -53,10 +53,18 @@ void refuse_interface_keys(const Settings& settings) {
   if (settings.text("perimeter-stiffness") != "auto") refuse_one_of(settings, ratio, "perimeter-stiffness");
 }
 
+/// The stiffnesses and the step of a daughter are automatic, so those of its ancestor must be, too.
+void refuse_given_stiffnesses_of_families(const Settings& settings) {
+  if (settings.text("break-up") == name(BreakUp::end)) return;
+  for (const char* key : {"time-step", "wall-stiffness", "area-stiffness", "perimeter-stiffness"})
+    if (is_changed(settings, key)) refuse_one_of(settings, key, "break-up");
+}
+
 }  // namespace
 
 void refuse_contradictions(const Settings& settings) {
   refuse_interface_keys(settings);
+  refuse_given_stiffnesses_of_families(settings);
   if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
     throw Refusal({.key = circles_key}, missing.front(), "the file has not been read", "");
   if (is_changed(settings, "pitch") && is_changed(settings, "obstacle-gap"))

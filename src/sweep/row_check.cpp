@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <string_view>
 
@@ -320,6 +321,34 @@ std::string neck_fault(const RunRow& row) {
   return "";
 }
 
+/// Checks that the members of a family are those that an ancestor and all break-ups give.
+std::string family_fault(const RunRow& row) {
+  const bool has_family = row.parameters.dp.break_up == BreakUp::daughters && is_final(row);
+  if (has_family != !row.family.empty())
+    return has_family ? "its droplets are missing" : "it has droplets, but no family";
+  if (!has_family) return "";
+  std::map<std::string, const Member*> members;
+  for (const Member& member : row.family)
+    if (!members.emplace(member.path, &member).second) return "its droplet " + member.path + " occurs twice";
+  double area = 0;  // of the droplets that have not broken up, relative to the ancestor's
+  for (const Member& member : row.family) {
+    const std::string who = "its droplet " + (member.path.empty() ? "(ancestor)" : member.path);
+    if (!(member.diameter > 0 && member.diameter <= 1) || !(member.end.time >= member.birth.time))
+      return who + " is that of no family";
+    const bool has_mother =
+        member.path.empty() || members.contains(member.path.substr(0, member.path.size() - 1));
+    const bool has_broken = member.status == MemberEnd::broken;
+    if (!has_mother || has_broken != members.contains(member.path + '0') ||
+        has_broken != members.contains(member.path + '1'))
+      return who + " is not connected to the others";
+    if (!has_broken) area += member.diameter * member.diameter;
+  }
+  constexpr double round_off = 1e-9;
+  return std::abs(area - 1) < round_off
+             ? ""
+             : named("area of its droplets", area) + " is not that of the ancestor";
+}
+
 /// Checks the place of release, which is known only among user-supplied circles: it is in the array.
 ///
 /// In rows of models before the twelfth, droplets released a little across the border are a little outside.
@@ -351,8 +380,9 @@ std::string result_fault(const RunRow& row) {
       if (std::string fault = check(row); !fault.empty()) return fault;
     return "";
   }
-  for (const auto check : {time_fault, motion_fault, steady_fault, soundness_fault, dwells_fault,
-                           contacts_fault, shape_fault, clog_fault, passage_fault, neck_fault, release_fault})
+  for (const auto check :
+       {time_fault, motion_fault, steady_fault, soundness_fault, dwells_fault, contacts_fault, shape_fault,
+        clog_fault, passage_fault, neck_fault, family_fault, release_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

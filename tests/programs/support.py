@@ -48,6 +48,9 @@ ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
 # the droplet.
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3",
            "obstacle-gap=0.06", "self-contact-range=0.1"]
+# Soft droplets that break up, some of them twice, within a second
+FAMILIES = ["break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02", "line-tension=0.05",
+            "vertices=64", "box=20", "obstacle-density=0.8", "obstacle-gap=0.3", "max-time=700", "seeds=1..4"]
 # Columns that may differ when the same run is recomputed. The columns state who computed the run, and how long this
 # took.
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]

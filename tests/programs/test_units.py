@@ -50,6 +50,7 @@ class Units(ProgramTest):
         lab = self.lab(thickness="0.4 mm")
         there = self.units(lab)
         self.assertAlmostEqual(there["line_tension_of_cell_uN"], 9.6 * 0.4, places=9)
+        self.assertAlmostEqual(there["break_up_neck"], 0.4 / 3.5, places=9)
         back = self.units(lab, "--line-tension", there["line_tension"], "--terminal-speed", there["terminal_speed"],
                           "--wall-stiffness", there["wall_stiffness"], "--length", 24, "--time", 1000)["given"]
         for name, value in (("tension_mN_per_m", 9.6), ("angle_degrees", 28), ("speed_mm_per_s", 7), ("length_mm", 84),

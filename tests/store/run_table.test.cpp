@@ -57,6 +57,24 @@ std::vector<sweep::RunRow> some_rows(int number) {
   return rows;
 }
 
+TEST_F(RunTableTest, GivesBackFamilies) {
+  std::vector<sweep::RunRow> rows = some_rows(3);
+  rows[1].family = {
+      {.status = MemberEnd::broken},
+      {.path = "0", .diameter = 0.6, .birth = {1, 2, 3}, .end = {4, 5, 6}, .status = MemberEnd::small},
+      {.path = "1", .diameter = 0.8, .mechanism = ClogMechanism::wrapped}};
+  publish(path(), rows, {});
+  const SweepFile file = read_sweep(path());
+  EXPECT_TRUE(file.rows[0].family.empty());
+  ASSERT_EQ(file.rows[1].family.size(), 3);
+  const Member& member = file.rows[1].family[1];
+  EXPECT_EQ(member.path, "0");
+  EXPECT_EQ(member.diameter, 0.6);
+  EXPECT_EQ(member.end.lateral, 5);
+  EXPECT_EQ(member.status, MemberEnd::small);
+  EXPECT_EQ(file.rows[1].family[2].mechanism, ClogMechanism::wrapped);
+}
+
 TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
   for (const int number : {0, 1, 200, 1000}) {  // each table replaces the table before
     const std::vector<sweep::RunRow> rows = some_rows(number);

@@ -416,6 +416,30 @@ TEST(FaultOf, NamesNecksThatCannotBe) {
   EXPECT_EQ(fault_of(necked), "");
 }
 
+TEST(FaultOf, NamesFamiliesThatCannotBe) {
+  const RunRow whole = row_of({{"max-time", "60"},
+                               {"line-tension", "0.05"},
+                               {"break-up-neck", "0.1"},
+                               {"break-up", "daughters"},
+                               {"seeds", "3"}});
+  ASSERT_GE(whole.family.size(), 3);
+  EXPECT_EQ(fault_of(whole), "");
+  const auto fault = [&](const auto& change) {
+    RunRow row = whole;
+    change(row.family);
+    return fault_of(row);
+  };
+  using Family = std::vector<Member>;
+  EXPECT_EQ(fault([](Family& family) { family.clear(); }), "its droplets are missing");
+  EXPECT_EQ(fault([](Family& family) { family.push_back(family[1]); }), "its droplet 0 occurs twice");
+  EXPECT_NE(fault([](Family& family) { family.erase(family.begin() + 1); }), "");
+  EXPECT_NE(fault([](Family& family) { family.back().diameter *= 0.99; }), "");
+  EXPECT_NE(fault([](Family& family) { family.back().end.time = -1; }), "");
+  RunRow without = whole;
+  without.parameters.dp.break_up = BreakUp::end;
+  EXPECT_EQ(fault_of(without), "it has droplets, but no family");
+}
+
 TEST(FaultOf, NamesContactsThatCannotBe) {
   RunRow met = row_of({{"max-time", "5"}});
   met.contacts.number = 2, met.contacts.first_distance = met.distance / 2;

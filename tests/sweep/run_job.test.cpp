@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "clog/core/run/dwell_record.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/columns.hpp"
+#include "clog/sweep/messages.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "support.hpp"
 
@@ -153,6 +155,29 @@ TEST(RunJob, SaysWhyItCannotUseItsSnapshot) {
   job.advance();
   EXPECT_EQ(job.row().message, "the snapshot is of another version");
   EXPECT_EQ(job.row().status, RunStatus::interrupted);
+}
+
+TEST(Report, KeepsAFamilyInPlaceOfTheSnapshot) {
+  RunRow row = RunJob(small_plan("5").task(0), 0).row();
+  row.status = RunStatus::broken;
+  const std::vector<std::byte> snapshot(100, std::byte{42});
+  EXPECT_EQ(report_from(to_bytes({row, snapshot})).snapshot, snapshot);
+  row.family = {
+      {.status = MemberEnd::broken}, {.path = "0", .diameter = 0.6}, {.path = "1", .diameter = 0.8}};
+  const Report report = report_from(to_bytes({row, snapshot}));
+  EXPECT_TRUE(report.snapshot.empty());
+  ASSERT_EQ(report.row.family.size(), 3);
+  EXPECT_EQ(report.row.family[2].path, "1");
+  EXPECT_EQ(report.row.family[2].diameter, 0.8);
+}
+
+TEST(Report, RefusesATornFamily) {
+  RunRow row = RunJob(small_plan("5").task(0), 0).row();
+  row.status = RunStatus::flowing;
+  row.family = {Member()};
+  std::vector<std::byte> bytes = to_bytes({row, {}});
+  bytes.resize(bytes.size() - 1);
+  EXPECT_THROW(report_from(bytes), Error);
 }
 
 }  // namespace

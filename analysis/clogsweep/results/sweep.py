@@ -39,6 +39,7 @@ class Sweep:
 
     - `rows`: table with a row for each run, as it was when the file was opened; `rows.attrs` contains `units` and
       `meanings` of the columns
+    - `droplets`: table with a row for each member of a family, with break-up=daughters
     - `attributes`: version, commit, config, command line
 
     All other methods run the programs on the file as it is now.
@@ -55,6 +56,7 @@ class Sweep:
         with stored.opened(self.path, stored.SWEEP, programs) as file:
             self._records = file["runs"][:]
             self.rows = stored.table_of(file)
+            self.droplets = stored.droplets(file)
             self.attributes: dict[str, str] = stored.attributes(file)
 
     def _program(self, name: str) -> pathlib.Path:

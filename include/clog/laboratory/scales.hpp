@@ -24,6 +24,7 @@ struct Scales {
   double terminal_speed = 0;           ///< V_t
   double capillary_number = 0;         ///< Ca = pi/(4 Gamma), at the terminal speed
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]
+  double break_up_neck = 0;            ///< width of a neck that breaks, the thickness of the cell [sigma]
 };
 Scales scales_of(const Laboratory& lab);
 

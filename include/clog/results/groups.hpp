@@ -16,6 +16,7 @@
 #include "clog/fit/migration.hpp"
 #include "clog/fit/survival.hpp"
 #include "clog/results/doubts.hpp"
+#include "clog/results/families.hpp"
 #include "clog/sweep/columns.hpp"
 
 namespace clog::results {
@@ -127,6 +128,7 @@ struct Group {
   int num_repeating = 0;  ///< runs that went farther than their array's period
   /// Passages through a device, in downstream order; the last one is the exit.
   std::vector<Passage> passages;
+  Families families;  ///< with break-up=daughters, of the runs that are over
   std::vector<Doubt> doubts;
   std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };

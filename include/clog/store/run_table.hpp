@@ -15,6 +15,8 @@ namespace clog::store {
 
 /// Version of the file format; see docs/reference/files.md.
 inline constexpr const char* format_version = "11";
+/// That of files with a table of droplets, which older programs must not read without it.
+inline constexpr const char* format_version_with_droplets = "12";
 
 /// Names and texts of the attributes at the file's root, which describe the origin of the file's numbers.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
@@ -75,7 +77,7 @@ inline std::optional<std::string> publish_sweep(const OutputPath& place, const s
   return publish_sweep(place, stamp, Rows::of(content.rows), content.provenance, content.circles);
 }
 
-/// Reads a file of format version 9 to 11. Missing columns get Parameter::before, or are unknown. @throws
+/// Reads a file of format version 9 to 12. Missing columns get Parameter::before, or are unknown. @throws
 /// Error if the file is missing, not HDF5, not ours, of another format version, or damaged
 SweepFile read_sweep(const std::string& path);
 /// If a file has no valid seal, tries to read it in a child process. Then a later read_sweep() of the same

@@ -12,6 +12,7 @@
 
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "clog/core/run/family.hpp"
 
 namespace clog::sweep {
 
@@ -32,6 +33,10 @@ struct RunRow : RunResult {
     contacts.number = healed_crossings = not_counted;
     hold.geometry.num_wrapped = hold.geometry.num_gaps = hold.geometry.num_arcs = not_counted;
   }
+
+  /// The members of a family that has ended, with break-up=daughters. They are no columns, but lines of the
+  /// table of droplets.
+  std::vector<Member> family;
 
   std::int64_t task = -1;
 

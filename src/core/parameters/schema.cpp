@@ -760,6 +760,30 @@ std::vector<Parameter> verdict_entries() {
                         "narrower than this width; 0: droplets never break up",
              .scope = &polygons,
              .range = {not_negative, to(0.5, "an unbroken droplet in a gap is as narrow", "try 0.05")}}),
+      entry(
+          "break-up", [](auto& run) -> auto& { return run.dp.break_up; },
+          {.column = "break_up",
+           .meaning = "what follows when a droplet breaks up: its run ends, or continues with all daughters",
+           .scope = &polygons,
+           .before = "end"}),
+      entry("smallest-daughter", [](auto& run) -> auto& { return run.dp.smallest_daughter; },
+            {.column = "smallest_daughter",
+             .symbol = "d_0",
+             .unit = "sigma",
+             .meaning = "daughters of a smaller diameter are counted, but not followed",
+             .scope = &polygons,
+             .range = {from(0.05, "its step would be much shorter", "try 0.2"),
+                       to(0.7, "the smaller of two daughters has at most a diameter of 0.71", "try 0.2")},
+             .before = 0.2}),
+      entry(
+          "speed-exponent", [](auto& run) -> auto& { return run.drag.speed_exponent; },
+          {.column = "speed_exponent",
+           .symbol = "n",
+           .meaning = "the terminal speed of a daughter is that of its ancestor times the relative diameter "
+                      "to this power",
+           .scope = &polygons,
+           .range = {not_negative, to(2, "no drag gives a larger exponent", "try 1")},
+           .before = 0.0}),
   };
 }
 

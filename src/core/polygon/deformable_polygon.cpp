@@ -163,7 +163,7 @@ Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, c
 }
 
 double neck_of_polygon(const DropletState& state, double below) {
-  return thinnest_neck(state.position, below);
+  return thinnest_neck(state.position, below).width;
 }
 
 }  // namespace

@@ -167,39 +167,39 @@ std::vector<Run> runs_of_edges(const Outline& outline) {
   return runs;
 }
 
-/// The width of the thinnest neck from a vertex to these edges, at most `below`.
-double thinnest_neck_to(const Outline& outline, Eigen::Index vertex, const Run& run, double below) {
+/// Looks from a vertex to these edges for a neck that is thinner than `thinnest`, which it replaces.
+void look_for_neck(const Outline& outline, Eigen::Index vertex, const Run& run, Neck& thinnest) {
   const Array2d from = outline.vertex(vertex);
-  double thinnest = below;
   for (Eigen::Index edge = run.first; edge < run.last; ++edge) {
     if (edge == vertex || outline.next(edge) == vertex) continue;
     const Foot foot = foot_on(outline, edge, from);
     const Array2d there = foot.point - from;
-    if (dot(there, there) >= thinnest * thinnest || !is_local_minimum(outline, vertex, foot)) continue;
+    if (dot(there, there) >= thinnest.width * thinnest.width || !is_local_minimum(outline, vertex, foot))
+      continue;
     const double width = length(there);
-    if (parts_are_lobes(outline, vertex, foot, width) && lies_inside(outline, vertex, foot)) thinnest = width;
+    if (parts_are_lobes(outline, vertex, foot, width) && lies_inside(outline, vertex, foot))
+      thinnest = {.width = width, .vertex = vertex, .edge = edge, .place = foot.place};
   }
-  return thinnest;
 }
 
 }  // namespace
 
-double thinnest_neck(const Eigen::ArrayXd& position, double below) {
+Neck thinnest_neck(const Eigen::ArrayXd& position, double below) {
   const Outline outline(position);
   const std::vector<Run> runs = runs_of_edges(outline);
   const double bound = std::min(below, (1 + round_off) * widest_neck(outline));
-  double thinnest = bound;
+  Neck thinnest{.width = bound};
   for (Eigen::Index vertex = 0; vertex < outline.size(); ++vertex) {
     if (!outline.turns_inwards(vertex)) continue;
     const Array2d from = outline.vertex(vertex);
     const Array2d go = outline.edge(vertex), come = -outline.edge(outline.before(vertex));
     const double tolerance = round_off * std::max(length(go), length(come));
     for (const Run& run : runs)
-      if (run.squared_distance(from) < thinnest * thinnest && run.reaches_behind(from, go, tolerance) &&
-          run.reaches_behind(from, come, tolerance))
-        thinnest = thinnest_neck_to(outline, vertex, run, thinnest);
+      if (run.squared_distance(from) < thinnest.width * thinnest.width &&
+          run.reaches_behind(from, go, tolerance) && run.reaches_behind(from, come, tolerance))
+        look_for_neck(outline, vertex, run, thinnest);
   }
-  return thinnest < bound ? thinnest : std::numeric_limits<double>::infinity();
+  return thinnest.width < bound ? thinnest : Neck();
 }
 
 }  // namespace clog

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -135,6 +136,11 @@ bool DropletRun::advance(int num_checks) {
 void DropletRun::start_afresh_and_take_snapshot() {
   droplet_->start_afresh();
   ByteWriter bytes;
+  save(bytes);
+  snapshot_ = bytes.take();
+}
+
+void DropletRun::save(ByteWriter& bytes) const {
   bytes.put(snapshot_kind);
   droplet_->save(bytes);
   start_frame_.save(bytes);
@@ -151,13 +157,12 @@ void DropletRun::start_afresh_and_take_snapshot() {
   contacts_.save(bytes);
   if (is_passage()) passage_.save(bytes);
   bytes.put(neck_);
-  snapshot_ = bytes.take();
 }
 
-DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
-                              std::span<const std::byte> snapshot) {
+DropletRun DropletRun::restore(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                               std::span<const std::byte> saved) {
   try {
-    ByteReader bytes(snapshot);
+    ByteReader bytes(saved);
     std::uint64_t kind = 0;
     bytes.get(kind);
     if (kind != snapshot_kind) throw Error("the snapshot is of another version");
@@ -165,30 +170,52 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     DropletState state;
     state.restore(bytes);
     check_state(state, run, *obstacles);
-    DropletRun resumed(run, std::move(obstacles), std::move(state));
-    resumed.droplet_->restore(rest);
-    resumed.start_frame_.restore(rest);
-    rest.get(resumed.start_);
-    resumed.end_ = scene_of(run).way(run, resumed.start_frame_.global(resumed.start_));
-    rest.get(resumed.steps_done_);
-    rest.get(resumed.quiet_checks_);
-    rest.get(resumed.balanced_at_);
-    rest.get(resumed.next_search_);
-    rest.get(resumed.sound_distance_);
-    rest.get(resumed.was_crossed_);
-    if (!resumed.is_in_range()) throw Error("its progress is out of range");
-    resumed.record_.restore(rest, resumed.time());
-    resumed.steady_.restore(rest);
-    resumed.dwells_.restore(rest);
-    resumed.contacts_.restore(rest);
-    if (resumed.is_passage()) resumed.passage_.restore(rest);
-    rest.get(resumed.neck_);
+    DropletRun restored(run, std::move(obstacles), std::move(state));
+    restored.droplet_->restore(rest);
+    restored.start_frame_.restore(rest);
+    rest.get(restored.start_);
+    restored.end_ = scene_of(run).way(run, restored.start_frame_.global(restored.start_));
+    rest.get(restored.steps_done_);
+    rest.get(restored.quiet_checks_);
+    rest.get(restored.balanced_at_);
+    rest.get(restored.next_search_);
+    rest.get(restored.sound_distance_);
+    rest.get(restored.was_crossed_);
+    if (!restored.is_in_range()) throw Error("its progress is out of range");
+    restored.record_.restore(rest, restored.time());
+    restored.steady_.restore(rest);
+    restored.dwells_.restore(rest);
+    restored.contacts_.restore(rest);
+    if (restored.is_passage()) restored.passage_.restore(rest);
+    rest.get(restored.neck_);
     if (!rest.at_end()) throw Error("the snapshot is of another run");
-    resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
-    return resumed;
+    return restored;
   } catch (const std::out_of_range&) {
     throw Error("the snapshot is torn");
   }
+}
+
+DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                              std::span<const std::byte> snapshot) {
+  DropletRun resumed = restore(run, std::move(obstacles), snapshot);
+  if (resumed.steps_done_ % steps_per_snapshot != 0) throw Error("its progress is out of range");
+  resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
+  return resumed;
+}
+
+std::vector<std::byte> DropletRun::state_at_break_up() const {
+  assert(status_ == RunStatus::broken);
+  ByteWriter bytes;
+  save(bytes);
+  return bytes.take();
+}
+
+DropletRun DropletRun::broken(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                              std::span<const std::byte> state_at_break_up) {
+  DropletRun broken = restore(run, std::move(obstacles), state_at_break_up);
+  if (!(broken.neck_.width < run.dp.break_up_neck)) throw Error("the droplet has not broken up");
+  broken.status_ = RunStatus::broken;
+  return broken;
 }
 
 /// Checks what a snapshot contains besides the droplet itself.
@@ -196,8 +223,7 @@ bool DropletRun::is_in_range() const {
   return (start_.abs() < burst_perimeter).all() &&
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
          std::abs(sound_distance_) <= farthest_way(run_) + obstacles_->period().along() &&
-         steps_done_ <= max_steps_ && steps_done_ % steps_per_snapshot == 0 && quiet_checks_ >= 0 &&
-         quiet_checks_ <= steps_done_ / steps_per_check &&
+         steps_done_ <= max_steps_ && quiet_checks_ >= 0 && quiet_checks_ <= steps_done_ / steps_per_check &&
          !(balanced_at_ < 0 || balanced_at_ >= run_.clog_energy) && next_search_ > 0 &&
          std::isfinite(next_search_) && kinetic_energy_ratio() < diverged_energy_ratio;
 }

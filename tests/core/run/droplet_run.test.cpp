@@ -498,7 +498,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   const DropletState state = hung.droplet().state();
   const std::optional<DropletState> rest = model_of(run).equilibrium(run, hung.obstacles(), state);
   ASSERT_TRUE(rest);
-  const double now = thinnest_neck(state.position), at_rest = thinnest_neck(rest->position);
+  const double now = thinnest_neck(state.position).width, at_rest = thinnest_neck(rest->position).width;
   ASSERT_LT(at_rest, now);
   run.max_time = 1000;
   const auto obstacles = std::make_shared<const ObstacleArray>(sample_obstacles(run.obstacles, run.seed));

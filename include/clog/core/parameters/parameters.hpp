@@ -101,6 +101,13 @@ struct Words<ClogDetection> {
                                                   {ClogDetection::threshold, "threshold"}};
 };
 
+/// What follows when a droplet breaks up: the run ends, or continues with the daughters.
+enum class BreakUp { end, daughters };
+template <>
+struct Words<BreakUp> {
+  static constexpr Worded<BreakUp> all[] = {{BreakUp::end, "end"}, {BreakUp::daughters, "daughters"}};
+};
+
 /// Half a vertex diameter and a vertex diameter for 256 vertices, the published number [sigma].
 inline constexpr double published_contact_range = 0.00614;
 inline constexpr double published_vertex_diameter = 0.01227;
@@ -144,6 +151,8 @@ struct DpParameters {
   double inertia = 1;
   /// Width of a neck below which a droplet has broken up [sigma]; 0: droplets do not break up.
   double break_up_neck = 0;
+  BreakUp break_up = BreakUp::end;
+  double smallest_daughter = 0.2;  ///< smaller daughters are counted and not followed [sigma]
 };
 
 /// Smallest width of a box: in a narrower box a droplet could touch its own periodic image [sigma].
@@ -239,6 +248,7 @@ struct ChannelParameters {
 /// (sigma/d)^alpha), Cheng et al. Eq. 7 for c = 1. The second term damps changes of shape only.
 struct DragParameters {
   double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
+  double speed_exponent = 0;            ///< n: the V_t of a daughter is that of the ancestor times d^n
   double near_wall = 0;                 ///< b_0/b_inf; the soft disk has no near-wall drag
   double near_wall_exponent = 4.0 / 3;  ///< alpha; 4/3 is calibrated in Appendix A of Cheng et al.
   double near_wall_cutoff = published_contact_range;  ///< a smaller d counts as this one [sigma]

@@ -138,6 +138,11 @@ class DropletRun {
                            std::span<const std::byte> snapshot);
   /// The last snapshot; empty before the first one.
   const std::vector<std::byte>& snapshot() const { return snapshot_; }
+  /// The state of a run whose droplet has broken up, from which broken() restores its result.
+  std::vector<std::byte> state_at_break_up() const;
+  /// A run whose droplet has broken up. @throws Error if the bytes are not from state_at_break_up()
+  static DropletRun broken(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                           std::span<const std::byte> state_at_break_up);
 
   /// Continues for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is
   /// over.
@@ -146,6 +151,10 @@ class DropletRun {
   /// The run's result so far; status `running` while it is not over.
   RunResult result() const;
   double time() const { return static_cast<double>(steps_done_) * run_.time_step.value(); }
+  /// Displacement along the flow after which the droplet has `passed` [sigma].
+  double way() const { return end_; }
+  /// As for the constructor.
+  void set_way(double way) { end_ = way; }
   /// Displacement along and across the flow since release [sigma].
   Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
   /// Displacement of a point, given in the droplet's frame, from the place of release [sigma].
@@ -191,6 +200,9 @@ class DropletRun {
   ThinnestNeck neck_;
   std::vector<std::byte> snapshot_;
 
+  void save(ByteWriter& bytes) const;
+  static DropletRun restore(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                            std::span<const std::byte> saved);
   bool is_in_range() const;
   bool is_passage() const;
   bool has_fallen() const { return time() > first_quiet_time_; }
