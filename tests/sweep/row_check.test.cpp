@@ -435,6 +435,10 @@ TEST(FaultOf, NamesFamiliesThatCannotBe) {
   EXPECT_NE(fault([](Family& family) { family.erase(family.begin() + 1); }), "");
   EXPECT_NE(fault([](Family& family) { family.back().diameter *= 0.99; }), "");
   EXPECT_NE(fault([](Family& family) { family.back().end.time = -1; }), "");
+  RunRow in_progress = whole;
+  in_progress.status = RunStatus::interrupted;
+  in_progress.family.clear();
+  EXPECT_EQ(fault_of(in_progress), "") << "the ancestor has broken up, and a daughter moves";
   RunRow without = whole;
   without.parameters.dp.break_up = BreakUp::end;
   EXPECT_EQ(fault_of(without), "it has droplets, but no family");
