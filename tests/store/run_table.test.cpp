@@ -59,10 +59,16 @@ std::vector<sweep::RunRow> some_rows(int number) {
 
 TEST_F(RunTableTest, GivesBackFamilies) {
   std::vector<sweep::RunRow> rows = some_rows(3);
-  rows[1].family = {
-      {.status = MemberEnd::broken},
-      {.path = "0", .diameter = 0.6, .birth = {1, 2, 3}, .end = {4, 5, 6}, .status = MemberEnd::small},
-      {.path = "1", .diameter = 0.8, .mechanism = ClogMechanism::wrapped}};
+  rows[1].family.resize(3);
+  rows[1].family[0].status = MemberEnd::broken;
+  rows[1].family[1] = {.path = "0",
+                       .diameter = 0.6,
+                       .birth = {1, 2, 3},
+                       .end = {4, 5, 6},
+                       .status = MemberEnd::small,
+                       .mechanism = ClogMechanism::none};
+  rows[1].family[2].path = "1";
+  rows[1].family[2].mechanism = ClogMechanism::wrapped;
   publish(path(), rows, {});
   const SweepFile file = read_sweep(path());
   EXPECT_TRUE(file.rows[0].family.empty());

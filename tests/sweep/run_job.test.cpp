@@ -162,8 +162,10 @@ TEST(Report, KeepsAFamilyInPlaceOfTheSnapshot) {
   row.status = RunStatus::broken;
   const std::vector<std::byte> snapshot(100, std::byte{42});
   EXPECT_EQ(report_from(to_bytes({row, snapshot})).snapshot, snapshot);
-  row.family = {
-      {.status = MemberEnd::broken}, {.path = "0", .diameter = 0.6}, {.path = "1", .diameter = 0.8}};
+  row.family.resize(3);
+  row.family[0].status = MemberEnd::broken;
+  row.family[2].path = "1";
+  row.family[2].diameter = 0.8;
   const Report report = report_from(to_bytes({row, snapshot}));
   EXPECT_TRUE(report.snapshot.empty());
   ASSERT_EQ(report.row.family.size(), 3);
