@@ -348,7 +348,7 @@ class Damage(ProgramTest):
         for version in ("4", "8", "99"):
             stored_rows.make_older(self.file, version)
             before = self.file.read_bytes()
-            line = f"(format version {version}, this program reads 9 to 11); use the program that wrote it, or compute the rows anew"
+            line = f"(format version {version}, this program reads 9 to 12); use the program that wrote it, or compute the rows anew"
             for name, *arguments in [*READERS, ("clogsweep", "verify", "s.h5")]:
                 self.refuse(name, *arguments, words=["s.h5", line])
             with self.assertRaisesRegex(clogsweep.UserError, re.escape(line)):
