@@ -15,6 +15,7 @@
 #include "clog/core/polygon/neck.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/portable_math.hpp"
 
 namespace clog {
 namespace {
@@ -101,7 +102,7 @@ RunParameters daughter_parameters(const RunParameters& ancestor, double diameter
         &run.obstacles.entrance_to, &run.obstacles.exit, &run.drag.near_wall_cutoff})
     *length /= diameter;
   if (run.obstacles.density.per_area) *run.obstacles.density.per_area *= diameter * diameter;
-  run.drag.terminal_speed *= std::pow(diameter, run.drag.speed_exponent - 0.5);
+  run.drag.terminal_speed *= portable::pow(diameter, run.drag.speed_exponent - 0.5);
   run.max_time = time_left / std::sqrt(diameter);
   model_of(run).resolve(run, scene_of(ancestor).sharpest_bend(ancestor) / diameter);
   return run;
@@ -139,7 +140,7 @@ void FamilyRun::Birth::restore(ByteReader& bytes) {
   if (!is_placed || (is_followed && !has_shape)) throw Error("a daughter of the snapshot is out of range");
 }
 
-FamilyRun::FamilyRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles)
+FamilyRun::FamilyRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles)
     : FamilyRun(run, obstacles, DropletRun(run, obstacles)) {}
 
 FamilyRun::FamilyRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletRun ancestor)
@@ -298,7 +299,7 @@ std::vector<std::byte> FamilyRun::snapshot() const {
   return bytes.take();
 }
 
-FamilyRun FamilyRun::resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+FamilyRun FamilyRun::resume(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles,
                             std::span<const std::byte> snapshot) {
   try {
     ByteReader bytes(snapshot);
@@ -312,13 +313,14 @@ FamilyRun FamilyRun::resume(const RunParameters& run, std::shared_ptr<const Obst
     std::size_t number = 0;
     bytes.get(number);
     for (; number > 0; --number) resumed.births_.emplace_back().restore(bytes);
-    Birth& birth = resumed.present_birth_.emplace();
+    Birth birth;
     birth.restore(bytes);
     std::vector<std::byte> of_daughter;
     bytes.get(of_daughter);
     if (!bytes.at_end()) throw Error("the snapshot is of another run");
     resumed.present_ = birth.member;
     resumed.begin(birth, of_daughter);
+    resumed.present_birth_ = std::move(birth);
     return resumed;
   } catch (const std::out_of_range&) {
     throw Error("the snapshot is torn");

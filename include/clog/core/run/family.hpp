@@ -78,9 +78,9 @@ ObstacleArray obstacles_in_units_of(const ObstacleArray& obstacles, double diame
 /// other. A daughter whose run fails ends there, and the others go on.
 class FamilyRun {
  public:
-  FamilyRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles);
+  FamilyRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
   /// @throws Error if the bytes are not a snapshot of such a run
-  static FamilyRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+  static FamilyRun resume(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles,
                           std::span<const std::byte> snapshot);
 
   /// See DropletRun::advance(); the run is over when every member has ended.
