@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from .. import style
-from ..labels import LABORATORY
 from ..labels.groups import Groups
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Group
@@ -84,6 +83,7 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
     for axes in (share, number):
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
+        axes.xaxis.set_minor_formatter("")
     share.set_ylim(0, 1.05)
     number.set_ylim(bottom=0)
     style.label(share, r"distance from the release $x/\sigma$", "share of the area that passes")
@@ -148,6 +148,6 @@ def draw_family(droplets: pandas.DataFrame, task: int, source: AnyPath, groups: 
                 fontsize=8, loc="lower right", ncols=len(handles))
     axes.set_xlabel(r"displacement along the flow $r/\sigma$")
     if length := groups.laboratory.get("length_mm"):
-        add_scale(axes, "top", length, LABORATORY["length"])
+        add_scale(axes, "top", length, "displacement [mm]")
     style.notes(axes, [f"task {task}: each bar is a droplet, as thick as its diameter, which is beside it"])
     return figure
