@@ -6,6 +6,7 @@
 #include "clog/core/parameters/refusal.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {

@@ -116,9 +116,9 @@ TEST_F(SweepStateTest, GoesOnFromTheSnapshotOfARunWhoseFailureWasWithdrawn) {
 TEST_F(SweepStateTest, GivesARestartedRunTheInstructionSetOfItsNewStart) {
   const auto report_under = [&](SweepState& state, const char* instruction_set, RunStatus status,
                                 const std::vector<std::byte>& snapshot) {
-    sweep::Report report = this->report(state, 0, status, 3.5, snapshot);
-    report.row.instruction_set = instruction_set;
-    state.report(report);
+    sweep::Report sent = report(state, 0, status, 3.5, snapshot);
+    sent.row.instruction_set = instruction_set;
+    state.report(sent);
     return state.row(0).instruction_set;
   };
   {
