@@ -169,7 +169,9 @@ class Evidence(unittest.TestCase):
                               ({64: run(0.01), 128: run(0.01), 512: run(0)}, IN_KIND),
                               ({64: run(0.03), 128: run(0.03), 256: run(0.001), 512: run(0)}, DOES_NOT),
                               ({64: run(0.03), 128: run(0.012), 256: run(0.03), 512: run(0)}, DOES_NOT),
-                              ({64: run(0, "clogged"), 128: run(0, "clogged"), 512: run(0, "clogged")}, DOES_NOT)]:
+                              ({64: run(0.03), 128: run(0.012), 512: run(0, "clogged")}, DOES_NOT),
+                              ({64: run(0, "clogged"), 128: run(0, "clogged"), 512: run(0, "clogged")}, DOES_NOT),
+                              ({64: run(0.03), 512: run(0)}, NOT_KNOWN), ({128: run(0)}, NOT_KNOWN)]:
             with unittest.mock.patch.object(passages.channels, "meshes", return_value=runs):
                 self.assertEqual(passages.profiles_are_smooth(None).verdict, verdict)
 

@@ -96,6 +96,10 @@ def profiles_are_smooth(runner: Runner) -> Finding:
     smooth from 128 vertices on, but those of coarser meshes are not noisy, or end because the droplet does not pass."""
     runs = channels.meshes(runner)
     *coarser, finest = sorted(runs)
+    if not coarser or not coarser[0] < 128 <= coarser[-1]:
+        return Finding(NOT_KNOWN, f"meshes of {', '.join(map(str, sorted(runs)))} vertices only")
+    if runs[finest].word("status") != "passed":
+        return Finding(DOES_NOT, f"the droplet of {finest} vertices does not pass")
     noise = {count: ripples(runs[count].table, runs[finest].table) for count in coarser}
     passes = {count: runs[count].word("status") == "passed" for count in coarser}
     is_smooth = {count: passes[count] and noise[count] <= SMOOTH for count in coarser}
