@@ -153,7 +153,7 @@ int clogfit(int argc, const char* const* argv) {
           "no place for '{}' (clogfit reads files; clogsweep select takes some rows of one)", path));
   }
   const store::SweepFile sweep = results::read_together(paths);
-  if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; start its sweep, or resume it");
+  if (sweep.rows.empty()) throw Error("no runs yet in " + joined(paths) + "; start or resume the sweep");
   for (const char* option : {"dwell", "mixture"})
     if (line.has(option) && std::ranges::none_of(sweep.rows, results::has_clogging_length))
       throw Error(fmt::format(

@@ -287,7 +287,7 @@ bool follows_from_droplet(const sweep::Column& column, const std::vector<const s
 }
 
 void require_lengths(const Side& side) {
-  if (side.rows.empty()) throw Error(side.name + " has no runs yet; start its sweep, or resume it");
+  if (side.rows.empty()) throw Error("no runs yet in " + side.name + "; start or resume the sweep");
   if (!std::ranges::all_of(side.rows, has_clogging_length))
     throw Error("cannot compare " + side.name +
                 " (droplets in a channel or on a wall have no clogging length); clogsweep select takes the "
