@@ -37,7 +37,7 @@ class Kind:
 CHANNEL = Kind(
     "Passages", "passed", {"passed": "passed", "clogged": "clogged", "broken": "broken up",
                            "flowing": "flowing at the end"},
-    {"largest_shape_parameter": r"largest shape parameter $\mathcal{A}$",
+    {"largest_shape_parameter": r"largest shape parameter $A$",
      "smallest_relative_speed": r"smallest speed $v_g/v_t$",
      "largest_relative_speed": r"largest speed $v_g/v_t$"},
     {"largest_shape_parameter": "largest A", "largest_shape_parameter_at": "at h/&sigma;",
