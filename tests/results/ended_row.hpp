@@ -19,8 +19,11 @@ inline void end_run(sweep::RunRow& row, RunStatus status, double distance) {
   row.wall_seconds = 1;
   row.kinetic_energy_ratio = 0;
   row.shape_parameter = 1;
-  if (row.parameters.dp.break_up == BreakUp::daughters)
-    row.family = {{.end = {.distance = distance, .time = row.time}, .status = MemberEnd::clogged}};
+  if (row.parameters.dp.break_up == BreakUp::daughters) {
+    Member& ancestor = row.family.emplace_back();
+    ancestor.end = {.distance = distance, .lateral = 0, .time = row.time};
+    ancestor.status = MemberEnd::clogged;
+  }
 }
 
 }  // namespace clog::results
