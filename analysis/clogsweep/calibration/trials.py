@@ -29,7 +29,7 @@ class Progress:
         with self.lock:
             self.num_simulations += 1
             self.best[trial] = min(self.best[trial], (delta, line_tension, drag))
-            self.line.renew(self.text)
+            self.line.redraw(self.text)
 
     def text(self, seconds: float) -> str:
         trials = f", {self.num_ended}/{len(self.best)} trials done" if len(self.best) > 1 else ""

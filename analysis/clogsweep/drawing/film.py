@@ -234,14 +234,14 @@ class Film:
         """Draws a frame. @return its pixels, valid until the next frame is drawn"""
         self.show(index)
         canvas = self.figure.canvas
-        self._renew_bar()
+        self._redraw_bar()
         canvas.restore_region(self._background)
         renderer = canvas.get_renderer()
         for artist in (*self._moving_under, *self._layers, self._bar_layer, *self._moving_over):
             artist.draw(renderer)
         return pixels_of(self.figure)
 
-    def _renew_bar(self) -> None:
+    def _redraw_bar(self) -> None:
         (left, _), (right, _) = self._axes.transData.transform([(0, 0), (1, 0)])
         if round(right - left) != self._bar_width:
             self._bar_width = round(right - left)

@@ -1,4 +1,4 @@
-"""Shows the progress of a script on the standard error. On a terminal this is one line that is renewed. Elsewhere a new
+"""Shows the progress of a script on the standard error. On a terminal this is one line that is redrawn. Elsewhere a new
 line appears now and then."""
 
 import sys
@@ -23,7 +23,7 @@ class StatusLine:
         self.on_terminal = sys.stderr.isatty()
         self.begin = self.last = time.monotonic()
 
-    def renew(self, text: Callable[[float], str]) -> None:
+    def redraw(self, text: Callable[[float], str]) -> None:
         """Shows a new text if the last one is old enough. @param text  makes the text from the seconds since the
         beginning"""
         now = time.monotonic()
@@ -43,6 +43,6 @@ def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
     line = StatusLine()
     for number, item in enumerate(items, start=1):
         yield item
-        line.renew(lambda seconds: f"{what} {number} of {total}, "
+        line.redraw(lambda seconds: f"{what} {number} of {total}, "
                                    f"{readable_duration(seconds * (total / number - 1))} left")
     line.wipe()

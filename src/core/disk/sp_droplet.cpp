@@ -13,7 +13,7 @@ namespace {
 
 constexpr int most_steps_per_check = 32;
 constexpr double contact_range = units::droplet_diameter / 2;
-/// Skin of the list of obstacles. A disk moves this far in some hundred steps, so the list is seldom renewed,
+/// Skin of the list of obstacles. A disk moves this far in some hundred steps, so the list is seldom rebuilt,
 /// and it stays short.
 constexpr double usual_skin = 0.02;  // [sigma]
 

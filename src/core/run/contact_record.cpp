@@ -10,7 +10,7 @@ namespace {
 
 /// Positions of one obstacle in two frames differ by less than this, because of round-off [sigma].
 constexpr double same_place = 1e-6;
-/// Additional distance up to which obstacles are listed, so that lists are seldom renewed [sigma].
+/// Additional distance up to which obstacles are listed, so that lists are seldom rebuilt [sigma].
 constexpr double skin = 0.25;
 
 /// Distance from a point to the segment between two others [sigma].

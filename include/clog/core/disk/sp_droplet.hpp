@@ -32,7 +32,7 @@ class SpForces {
   double wall_stiffness_;
   Eigen::Array2d weight_;
   bool listed_ = false;
-  double skin_ = 0;  // distance that the disk may move before near_ must be renewed
+  double skin_ = 0;  // distance that the disk may move before near_ must be rebuilt
   Eigen::Array2d reference_{0, 0};
   std::vector<Obstacle> near_;
 
@@ -42,8 +42,8 @@ class SpForces {
   void visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame, Visit visit) const;
 };
 
-/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but the variable
-/// in its loop is the displacement in a step instead of the velocity. This shortens the longest chain of
+/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but its loop uses
+/// the displacement per step as variable instead of the velocity. This shortens the longest chain of
 /// dependent operations in a step to one root, one division and a few sums.
 class SpDroplet final : public Droplet {
  public:

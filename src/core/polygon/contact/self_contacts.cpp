@@ -44,18 +44,18 @@ void SelfContacts::update(const DropletState& state, const Travel& travel) {
                                  .maxCoeff();
     if (hold(std::sqrt(farthest2), travel)) return;
   }
-  renew(state, travel);
+  rebuild(state, travel);
 }
 
 bool SelfContacts::hold(double moved, const Travel& travel) const {
   return reference_.size() > 0 && moved + travel.relative < skin_;
 }
 
-void SelfContacts::renew(const DropletState& state, const Travel& travel) {
+void SelfContacts::rebuild(const DropletState& state, const Travel& travel) {
   // The skin is thin enough to exclude neighbours along a straight contour at rest, unless the droplet moves
   // very fast.
   const double usual_skin = (exclusion_ * rest_edge_ - range_) / 4;
-  rebuild(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
+  rebuild_with_skin(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
 }
 
 double SelfContacts::measure_edges(const double* x, const double* y, int n) {
@@ -96,7 +96,7 @@ void SelfContacts::find_close(const double* x, const double* y, double longest_e
                               groups_, close_);
 }
 
-void SelfContacts::rebuild(const DropletState& state, double skin) {
+void SelfContacts::rebuild_with_skin(const DropletState& state, double skin) {
   skin_ = skin;
   const int n = static_cast<int>(state.size());
   const double* x = state.position.data();

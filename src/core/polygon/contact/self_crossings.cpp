@@ -153,7 +153,7 @@ bool SelfCrossings::heals(const Contour& contour, const Drift& drift, SelfCrossi
   return false;
 }
 
-void SelfCrossings::renew(const Contour& contour, std::vector<SelfCrossing>& crossings) {
+void SelfCrossings::rebuild(const Contour& contour, std::vector<SelfCrossing>& crossings) {
   places_.clear();
   muted_.clear();
   if (crossings.empty()) return;
@@ -199,7 +199,7 @@ bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const Sel
   state.num_healed += static_cast<std::int64_t>(num_healed);
   for (const SelfContacts::Pair& pair : passed) state.crossings.push_back({pair.vertex, pair.edge});
   // Muted contacts move with the nearest edge.
-  renew(contour, state.crossings);
+  rebuild(contour, state.crossings);
   return true;
 }
 

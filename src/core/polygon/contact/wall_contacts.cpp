@@ -11,7 +11,7 @@
 namespace clog {
 namespace {
 
-// A droplet moves 0.05 sigma in about 1000 steps, so renewals of the lists cost almost nothing. The list of
+// A droplet moves 0.05 sigma in about 1000 steps, so rebuilding of the lists cost almost nothing. The list of
 // obstacles that may be nearest to a vertex gets longer with a thicker skin, so this list has the thinner
 // one.
 constexpr double touching_skin = 0.05;
@@ -39,7 +39,7 @@ void WallContacts::update(const DropletState& state, const Travel& travel) {
             .maxCoeff();
     if (hold(std::sqrt(farthest2), travel)) return;
   }
-  renew(state, travel);
+  rebuild(state, travel);
 }
 
 bool WallContacts::hold(double moved, const Travel& travel) const {
@@ -47,10 +47,10 @@ bool WallContacts::hold(double moved, const Travel& travel) const {
   return reference_.size() > 0 && sway * (moved + travel.absolute) < skin_;
 }
 
-void WallContacts::renew(const DropletState& state, const Travel& travel) {
+void WallContacts::rebuild(const DropletState& state, const Travel& travel) {
   // For a fast droplet, lists with the usual skin would not stay valid until the next update.
   const double usual_skin = keep_ == Keep::nearest_to_vertex ? nearest_skin : touching_skin;
-  rebuild(state, std::clamp(2 * refined_sway * travel.absolute, usual_skin, widest_skin));
+  rebuild_with_skin(state, std::clamp(2 * refined_sway * travel.absolute, usual_skin, widest_skin));
 }
 
 void WallContacts::gather_nearby(const DropletState& state) {
@@ -89,7 +89,7 @@ void WallContacts::gather_nearby(const DropletState& state) {
   }
 }
 
-void WallContacts::rebuild(const DropletState& state, double skin) {
+void WallContacts::rebuild_with_skin(const DropletState& state, double skin) {
   skin_ = skin;
   num_points_ = state.size();
   reference_.resize(2 * num_points_ + edges_per_group);
@@ -111,8 +111,8 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   largest_radius_ = nearby_.empty() ? 0 : largest->radius;
 }
 
-/// Lists the edges that a circle may touch until the lists are renewed. An obstacle that gets within range
-/// before the renewal is within range + skin now.
+/// Lists the edges that a circle may touch until the lists are rebuilt. An obstacle that gets within range
+/// before then is within range + skin now.
 /// @param fine  the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& position, const Eigen::ArrayXd& fine) {
   const int n = static_cast<int>(num_points_);
@@ -232,8 +232,8 @@ void WallContacts::measure_distances(const DropletState& state) {
   }
 }
 
-/// Lists the obstacles that a vertex may touch, or that may be its nearest, until the lists are renewed. An
-/// obstacle that becomes the nearest before the renewal is at most 2 skins farther away now than the present
+/// Lists the obstacles that a vertex may touch, or that may be its nearest, until the lists are rebuilt. An
+/// obstacle that becomes the nearest before then is at most 2 skins farther away now than the present
 /// nearest one.
 void WallContacts::list_by_vertex(const DropletState& state) {
   measure_distances(state);

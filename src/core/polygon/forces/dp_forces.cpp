@@ -114,7 +114,7 @@ double DpForces::deepest_overlap(const DropletState& state) const {
 double DpForces::self_contact_energy(const Contour& contour, const DropletState& state) const {
   SelfCrossings crossings;
   std::vector<SelfCrossing> crossed = state.crossings;
-  crossings.renew(contour, crossed);
+  crossings.rebuild(contour, crossed);
   double energy = contact_stiffness_ * crossings.find_pushes(contour, self_);
   for (const SelfContacts::Pair& pair : self_.pairs()) {
     if (crossings.is_muted(pair)) continue;

@@ -121,8 +121,8 @@ kernel::Survey DpStepper::survey() const {
                         memory_.arrays());
 }
 
-/// Renews the contact lists if they would become invalid within this time, and selects from them the possible
-/// contacts.
+/// Rebuilds the contact lists if they would become invalid within this time, and selects from them the
+/// possible contacts.
 void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now, double time,
                                  Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
@@ -144,7 +144,7 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
       thrown * near_.contacts.measure(kernel_, contact_as_kick(run_, *forces_, 0), *forces_, a);
   near_.wall_way = refined_sway * (travel.absolute + unforeseen);
   near_.self_way = 2 * (travel.relative + unforeseen);
-  crossings_.renew(contour(), state.crossings);
+  crossings_.rebuild(contour(), state.crossings);
   keep_near_contacts();
   if (holds_circles_) {
     const double lost = forces_->friction().stiffness() * near_.hold.make(near_.contacts.walls(), state);
@@ -281,11 +281,11 @@ void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoeff
                           memory_.arrays());
   if (forces_->wetted_walls().is_on()) add_wetting(state, impulse, work);
   if (slides) hold_by_friction(state, impulse, work);
-  if (terms_.varying_rate) renew_rates(coefficients);
+  if (terms_.varying_rate) update_rates(coefficients);
 }
 
 /// Computes the near-wall drag, unless it is still valid (see most_steps_per_rate).
-void DpStepper::renew_rates(const kernel::KickCoefficients& coefficients) {
+void DpStepper::update_rates(const kernel::KickCoefficients& coefficients) {
   if (rates_.steps_left > 0 && coefficients.h1 == rates_.h1 && coefficients.h2 == rates_.h2) {
     --rates_.steps_left;
     return;

@@ -30,7 +30,7 @@ class DpStepper {
  public:
   /// @param run  resolved parameters
   /// @param obstacles  must outlive this object
-  /// @param forces  of the same run, whose contact lists are renewed when needed; must outlive this object
+  /// @param forces  of the same run, whose contact lists are rebuilt when needed; must outlive this object
   DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces);
 
   /// Rebuilds the contact lists of a droplet.
@@ -102,7 +102,7 @@ class DpStepper {
   Contour contour() const;
   void push_off_everything(DropletState& state, const kernel::KickCoefficients& coefficients, double impulse,
                            Droplet::Work* work);
-  void renew_rates(const kernel::KickCoefficients& coefficients);
+  void update_rates(const kernel::KickCoefficients& coefficients);
   void add_wetting(DropletState& state, double impulse, Droplet::Work* work);
   void hold_by_friction(DropletState& state, double impulse, Droplet::Work* work);
   double vertex_mass() const;  // inertial mass of a vertex

@@ -208,9 +208,9 @@ TEST(SelfCrossings, PushWithTheSlopeOfTheirEnergyWhereSeveralNeighboursPassed) {
     const auto n = static_cast<int>(state.size());
     const double* const places = state.position.data();
     const Contour contour{n, places, places + n};
-    contacts.renew(state, {});
+    contacts.rebuild(state, {});
     SelfCrossings crossings;
-    crossings.renew(contour, state.crossings);
+    crossings.rebuild(contour, state.crossings);
     crossings.find_pushes(contour, contacts);
     Eigen::ArrayXd force = Eigen::ArrayXd::Zero(state.position.size()), slope = force;
     for (const auto& [vertex, push] : crossings.pushes()) {

@@ -158,7 +158,7 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
   for (const int vertices : {64, 101}) {
     const auto [run, initial, walls] = touching_droplet(vertices);
     constexpr double long_step = 1e-3, short_step = 0.3e-3;
-    // Each entry makes one step, because the rates of the near-wall drag are renewed between entries.
+    // Each entry makes one step, because the rates of the near-wall drag are updated between entries.
     std::vector<Steps> all;
     all.reserve(9);
     for (int k = 0; k < 9; ++k) all.push_back({1, k % 3 == 1 ? short_step : long_step});
