@@ -29,8 +29,8 @@ class CommandLine {
   CommandLine& flag(const char* name, const char* help);
   /// Declares an option with a value. @param otherwise  the default value; nullptr: none
   CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
-  /// Declares an option whose value may also be given as a word without dashes. Such words are the values of
-  /// these options in the order in which the options were declared.
+  /// Declares an option whose value may also be given as a word without dashes. If several options are
+  /// declared in this way, the words are assigned to them in the order of the declarations.
   CommandLine& word(const char* name, const char* help);
   /// Declares an option for all further words without dashes.
   CommandLine& words(const char* name, const char* help);
@@ -67,8 +67,8 @@ class CommandLine {
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
-  /// The given texts with numbers that have units, by key. settings() does not contain these texts, because
-  /// only the laboratory of --lab can convert them.
+  /// Texts of keys whose numbers have units. settings() does not contain these texts, because their
+  /// conversion needs the laboratory of --lab.
   const std::map<std::string, std::string>& texts_with_units() const { return texts_with_units_; }
   /// The command as it was given, in one line.
   const std::string& text() const { return text_; }

@@ -14,8 +14,8 @@ struct Repetition {
 };
 /// Whether two members of families are equal, bit for bit.
 bool are_equal(const Member& a, const Member& b);
-/// Columns of results in which two rows of the same run differ; all NaN are equal. `droplets` if their
-/// families differ.
+/// Columns of results in which two rows of the same run differ; all NaN are equal. `droplets` is one of them
+/// if the families of the rows differ.
 std::vector<std::string> differing_results(const sweep::RunRow& a, const sweep::RunRow& b);
 /// @param row  see replayable_row()
 Repetition repeat(const sweep::RunRow& row);

@@ -8,7 +8,7 @@
 
 namespace clog {
 
-/// Perimeter above which a polygon has burst and is not integrated any further [sigma].
+/// Perimeter [sigma] above which a polygon counts as burst. It is then not integrated any further.
 inline constexpr double burst_perimeter = 1000;
 
 /// A moving droplet. A run uses the droplets of both models through this class.
@@ -43,7 +43,7 @@ class Droplet {
   /// Area and perimeter; a soft disk returns those of the undeformed disk.
   virtual PolygonShape shape() const = 0;
 
-  /// From this call on, work() is summed up, which costs a pass over the velocities per step.
+  /// After this call, work() adds up the dissipated energy. This costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
   /// Work since measure_dissipation() [g rho sigma^3]: the energy lost to drag, and the work of the springs
   /// along the interface, whose force derives from no potential energy. Both are sums by the trapezoidal

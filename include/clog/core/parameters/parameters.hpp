@@ -9,8 +9,8 @@
 
 namespace clog {
 
-/// Increase this number whenever equal parameters begin to give other results: runs of different versions do
-/// not belong in one table.
+/// Increase this number whenever equal parameters begin to give other results. Runs of different versions
+/// must not be in one table.
 inline constexpr int model_version = 12;
 
 enum class Model { dp, sp };
@@ -18,9 +18,9 @@ template <>
 struct Words<Model> {
   static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
 };
-/// The springs of the edges. They pull each edge towards the rest length l0 (`rest`, as in the paper) or
-/// towards the current mean edge length (`mean`), or they act only `along` the interface. Springs `along` the
-/// interface space the vertices evenly, but carry no tension.
+/// The springs of the edges. With `rest` (as in the paper), they pull each edge towards the rest length l0;
+/// with `mean`, towards the current mean edge length. With `along`, they act only along the interface: they
+/// space the vertices evenly, but carry no tension.
 enum class PerimeterSpring { rest, mean, along };
 template <>
 struct Words<PerimeterSpring> {
@@ -33,8 +33,8 @@ template <>
 struct Words<SelfContact> {
   static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
 };
-/// Whether wall friction acts only on the part of the interface next to the wall, or through films also on
-/// the layers of the interface above (see WallContacts).
+/// Whether wall friction acts only on the part of the interface next to the wall, or also, through films, on
+/// the layers of the interface above this part (see WallContacts).
 enum class FilmFriction { off, on };
 template <>
 struct Words<FilmFriction> {
@@ -54,7 +54,7 @@ template <>
 struct Words<WallContact> {
   static constexpr Worded<WallContact> all[] = {{WallContact::edge, "edge"}, {WallContact::vertex, "vertex"}};
 };
-/// What the droplet meets: circles placed by random sequential addition, in a tilted lattice, or by the user;
+/// The obstacles of a run: circles placed by random sequential addition, in a tilted lattice, or by the user;
 /// the two wedges of a channel; a flat wall.
 enum class ObstacleLayout { random, lattice, file, channel, wall };
 template <>
@@ -92,8 +92,9 @@ template <>
 struct Words<SideWalls> {
   static constexpr Worded<SideWalls> all[] = {{SideWalls::off, "off"}, {SideWalls::on, "on"}};
 };
-/// The condition for a clog: the kinetic energy is below a threshold, or, long before that, a stable
-/// equilibrium is proved to exist nearby (equilibrium.hpp).
+/// The condition for a clog. `threshold`: the kinetic energy is below a threshold. `certified`: a stable
+/// equilibrium is proved to exist nearby (equilibrium.hpp), which is usually long before the threshold is
+/// reached.
 enum class ClogDetection { threshold, certified };
 template <>
 struct Words<ClogDetection> {
@@ -108,7 +109,7 @@ struct Words<BreakUp> {
   static constexpr Worded<BreakUp> all[] = {{BreakUp::end, "end"}, {BreakUp::daughters, "daughters"}};
 };
 
-/// Half a vertex diameter and a vertex diameter for 256 vertices, the published number [sigma].
+/// Half a vertex diameter, and a vertex diameter, for the published number of 256 vertices [sigma].
 inline constexpr double published_contact_range = 0.00614;
 inline constexpr double published_vertex_diameter = 0.01227;
 
@@ -125,29 +126,30 @@ struct DpParameters {
   std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: automatic
   double perimeter_stiffness_ratio = 1e-3;    ///< K_l/Gamma of springs to the rest length
   WallContact wall_contact = WallContact::edge;
-  /// Distance from a wall's surface at which contact begins [sigma]; empty: half a vertex diameter, as
-  /// published, which makes every gap narrower by a vertex diameter.
+  /// Distance from a wall's surface at which contact begins [sigma]. If it is empty, it is half a vertex
+  /// diameter, as published; this makes every gap narrower by a vertex diameter.
   std::optional<double> contact_range = 0;
   /// Tension of the interface on a wall, divided by Gamma: (gamma_so - gamma_sw)/gamma_ow, which is minus the
   /// cosine of the contact angle (Young). It is 1 if a film of water covers all walls, as in the paper's
   /// figures. If it is empty, wall_tension() computes it from the contact angles.
   std::optional<double> wall_tension;
   /// Contact angles of the droplet's fluid at which the end of a wetted arc begins to recede or to advance
-  /// [degrees]. If they are empty, both are Young's angle, and walls do not hold the ends. Angles may be
-  /// given only with springs `along` the interface.
+  /// [degrees]. If they are empty, both are Young's angle, and walls do not hold the ends. Angles require
+  /// springs `along` the interface.
   std::optional<double> receding_angle, advancing_angle;
   double friction = 0;        ///< friction coefficient mu of walls; 0 with springs `along`
-  double yield_traction = 0;  ///< tau_y, force per length that a wall bears without any push [g rho sigma]
+  double yield_traction = 0;  ///< tau_y, force per length up to which a wall holds the interface without a
+                              ///< normal force [g rho sigma]
   SelfContact self_contact = SelfContact::on;
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
-  /// If it is empty, friction acts through films if there are friction and self-contact.
+  /// If it is empty, friction acts through films whenever friction and self-contact are both on.
   std::optional<FilmFriction> film_friction;
   Gravity gravity = Gravity::area;
   std::optional<int> vertices;  ///< N_v; empty: automatic
-  /// S, inertial mass divided by the droplet's mass. With a larger S, the droplet's speed follows the forces
-  /// more slowly, and time steps may be sqrt(S) times as long; weight and drag stay the same.
+  /// S, the factor that multiplies the inertial mass. With a larger S, the droplet's speed follows the forces
+  /// more slowly, and time steps may be sqrt(S) times as long. Weight and drag do not depend on S.
   double inertia = 1;
   /// Width of a neck below which a droplet has broken up [sigma]; 0: droplets do not break up.
   double break_up_neck = 0;

@@ -29,10 +29,11 @@ struct TravelSpeed {
 /// @param samples  at evenly spaced times
 TravelSpeed travel_speed(std::span<const TravelSample> samples);
 
-/// Number of values at the beginning to exclude from a mean: the multiple of 5 after which the mean of the
-/// rest has the smallest standard error, if means of 5 values are independent (MSER-5: White, Simulation 69,
-/// 323 (1997)). Only the first half is searched; the result is nullopt for fewer than 50 values, or if the
-/// best number is at the end of that half, because the transient may then continue.
+/// Number of values at the beginning to exclude from a mean (MSER-5: White, Simulation 69, 323 (1997)). It is
+/// the multiple of 5 after which the mean of the rest has the smallest standard error, if means of 5 values
+/// are independent. Only the first half of the values is searched. Returns nullopt for fewer than 50 values.
+/// Also returns nullopt if the best number is at the end of that half, because the transient may then
+/// continue.
 std::optional<std::size_t> transient_length(std::span<const double> values);
 
 /// Standard error of the mean of correlated values, from the scatter of the means of blocks of 1, 2, 4, ...

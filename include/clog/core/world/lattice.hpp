@@ -52,9 +52,9 @@ std::string tilt_text(LatticeKind kind, const CommensurateLattice& lattice);
 /// Pitch, row spacing, tilt and period, in words. @param obstacles  resolved
 std::string lattice_text(const ObstacleParameters& obstacles);
 
-/// A lattice of spacing diameter + gap, which the seed shifts. After the shift, the box's centre, where
-/// droplets are released, is at a uniformly distributed place of the unit cell. Places where a droplet
-/// touches an obstacle are excluded, unless a droplet touches obstacles everywhere.
+/// A lattice of spacing diameter + gap, shifted according to the seed. The shift moves the box's centre,
+/// where droplets are released, to a uniformly distributed place of the unit cell. Places where a droplet
+/// touches an obstacle are excluded, unless there are no other places.
 /// @param parameters  resolved: box, length and angle are those of a CommensurateLattice
 ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 
