@@ -13,8 +13,8 @@ namespace {
 
 constexpr int most_steps_per_check = 32;
 constexpr double contact_range = units::droplet_diameter / 2;
-/// Skin of the list of obstacles. A disk moves this far in some hundred steps, so the list is seldom rebuilt,
-/// and it stays short.
+/// Skin of the list of obstacles. A disk moves this far in some hundred steps, so the list is seldom rebuilt.
+/// The list is also short.
 constexpr double usual_skin = 0.02;  // [sigma]
 
 }  // namespace
@@ -54,12 +54,13 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
   return force;
 }
 
-/// Only a root, a division and a few sums depend on each other; the processor executes the other operations
-/// at the same time.
+/// Only a root, a division and a few sums depend on each other; the processor overlaps them with the other
+/// operations.
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);
-  Eigen::Array2d push(0, 0);  // the part that needs a root: stiffness times reach along each arm
+  Eigen::Array2d push(
+      0, 0);  // the part with a root: the sum of stiffness * reach over the directions to the centres
   Eigen::Array2d rest = scale * weight_;
   for (const Obstacle& obstacle : near_) {
     const Eigen::Array2d arm = place - Eigen::Array2d(obstacle.x, obstacle.y);
@@ -115,7 +116,7 @@ void SpDroplet::start_afresh() {
 void SpDroplet::advance(int num_steps) {
   const double dt = run_.time_step.value();
   for (int done = 0, steps = 0; done < num_steps; done += steps) {
-    // At large steps and high speeds, checks are more frequent, so that the list of obstacles stays short.
+    // At long steps and high speeds, checks are more frequent, so that the list of obstacles stays short.
     steps = std::min(most_steps_per_check, num_steps - done);
     while (steps > 1 && state_.possible_travel(steps * dt).absolute > usual_skin) steps /= 2;
     if (state_.recentre().any()) forces_.forget_contacts();

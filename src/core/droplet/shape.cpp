@@ -87,8 +87,8 @@ int num_self_crossings(const Eigen::ArrayXd& position) {
   const int n = static_cast<int>(position.size() / 2);
   const auto x = position.head(n);
   const auto y = position.tail(n);
-  // Edges are sorted by their lower ends along the longer side of the contour, because few edges overlap
-  // there.
+  // Edges are sorted by their lower ends along the longer side of the contour's bounding box. Along this
+  // side, few edges overlap.
   const bool is_wide = x.maxCoeff() - x.minCoeff() > y.maxCoeff() - y.minCoeff();
   const double* along = is_wide ? position.data() : position.data() + n;
   const double* across = is_wide ? position.data() + n : position.data();

@@ -68,7 +68,7 @@ void CrossingDepth::add_gradient_of_slip(double factor, std::vector<VertexPush>&
   to.push_back({slip_.own_end, -slip_.fraction * factor * slip_.direction});
 }
 
-/// Adds the gradient of the scalar product of `factor` and the way from the vertex to the nearest point of
+/// Adds the gradient of the scalar product of `factor` and the vector from the vertex to the nearest point of
 /// the edge.
 void CrossingDepth::add_gradient_of_way(const Eigen::Array2d& factor, std::vector<VertexPush>& to) const {
   if (!is_beside_) {
@@ -76,7 +76,8 @@ void CrossingDepth::add_gradient_of_way(const Eigen::Array2d& factor, std::vecto
     to.push_back({fraction_ > 0 ? end_ : begin_, factor});
     return;
   }
-  // The nearest point slides along the edge with the vertex, so the way is always normal to the edge.
+  // The nearest point slides along the edge with the vertex, so the vector to it is always normal to the
+  // edge.
   const Eigen::Array2d normal = turned(tangent_);
   const double along = (factor * tangent_).sum(), across = (factor * normal).sum();
   const double on_end = fraction_ * across - along * (way_to_edge_ * normal).sum() / length_;

@@ -52,8 +52,8 @@ bool SelfContacts::hold(double moved, const Travel& travel) const {
 }
 
 void SelfContacts::rebuild(const DropletState& state, const Travel& travel) {
-  // The skin is thin enough to exclude neighbours along a straight contour at rest, unless the droplet moves
-  // very fast.
+  // With the usual skin, no neighbours along a straight contour at rest are listed. A very fast droplet needs
+  // a thicker skin.
   const double usual_skin = (exclusion_ * rest_edge_ - range_) / 4;
   rebuild_with_skin(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
 }
@@ -126,7 +126,7 @@ void SelfContacts::rebuild_with_skin(const DropletState& state, double skin) {
   };
   const auto add_edges_of = [&](int vertex, int other) {
     add_if_near({vertex, other});
-    // The edge that ends at `other` is found through its first vertex, if that is near, too.
+    // The edge that ends at `other` is found through its first vertex, if that vertex is near, too.
     const int before = other > 0 ? other - 1 : n - 1;
     if (!is_near(vertex, before)) add_if_near({vertex, before});
   };

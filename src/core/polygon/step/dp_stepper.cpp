@@ -21,7 +21,7 @@ kernel::KickTerms with_implicit_pressure(kernel::KickTerms terms) {
   return terms;
 }
 
-/// Surveys are frequent enough that vertices move little in between, which keeps the lists short.
+/// Surveys are frequent, so that vertices move little between them and the lists stay short.
 int steps_between_surveys(double time_step) {
   constexpr double longest = 0.04;  // [t0]
   int steps = most_steps_per_survey;
@@ -29,8 +29,8 @@ int steps_between_surveys(double time_step) {
   return steps;
 }
 
-/// Allows an implicit pressure if the drag on the relative motion of vertices damps the energy that the
-/// pressure feeds into a swinging droplet (docs/notes/2026-11-26-time-step.md).
+/// An implicit pressure feeds energy into a swinging droplet. It is allowed only if the drag on the relative
+/// motion of vertices damps this energy (docs/notes/2026-11-26-time-step.md).
 Pressure most_pressure(const RunParameters& run) {
   constexpr double most_steps = 32;
   const bool is_damped =
@@ -84,9 +84,9 @@ std::int64_t DpStepper::move(DropletState& state, int num_steps, Droplet::Work* 
   return num_taken;
 }
 
-/// The number of parts of a step in which vertices may move as far as `way` against each other. Vertices that
-/// move farther than the range of self-contact in one step would pass through other parts of the interface
-/// before these push them.
+/// The number of parts into which a step is split if vertices may move as far as `way` against each other in
+/// this step. Otherwise a vertex that moves farther than the range of self-contact in one step would pass
+/// through other parts of the interface before they push it.
 int DpStepper::parts_of_fast_step(double way) const {
   constexpr double farthest = 0.25;  // in units of the range
   constexpr double most_parts = 16;
@@ -135,9 +135,9 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   }
   rates_.fastest = now.speed;
   fastest_relative_ = now.relative_speed;
-  kernel_.clear_pushes(n_, a);  // the lists may name other groups than before
-  // A contact accelerates its vertices. For a few steps, they therefore move farther by up to half of the
-  // contact's depth per step, which `travel` does not include.
+  kernel_.clear_pushes(n_, a);  // the new lists may contain other groups than the old ones
+  // A contact accelerates its vertices. So they move farther for a few steps, by up to half of the contact's
+  // depth per step. `travel` does not include this distance.
   constexpr double thrown = 4;
   const double unforeseen =
       0.1 * forces_->vertex_diameter() +
@@ -159,8 +159,8 @@ void DpStepper::keep_near_contacts() {
   near_.contacts.mute(crossings_.muted(), n_);
 }
 
-/// Leaves the last half kick open: positions belong to the end of the steps, velocities to half a step
-/// earlier.
+/// The last half kick is still pending on return: positions are those at the end of the steps, and velocities
+/// those of half a step earlier.
 void DpStepper::advance(DropletState& state, const Steps& steps, Droplet::Work* work) {
   assert(forces_->has_contact_lists());
   assert(run_.drag.near_wall == 0 || steps.pressure == Pressure::present);
@@ -176,8 +176,8 @@ void DpStepper::finish(DropletState& state, Droplet::Work* work) {
   near_.hold.hand_back(state);
 }
 
-/// Evaluates the forces once, makes the half kick that ends a step and the one that begins the next step, and
-/// drifts to the next evaluation. Without a drift, makes only the first of these half kicks.
+/// Evaluates the forces once. Then makes the half kick that ends a step and the one that begins the next
+/// step, and drifts to the next evaluation. Without a drift, makes only the half kick that ends a step.
 void DpStepper::kick_and_drift(DropletState& state, double half_step, double drift_time,
                                Droplet::Work* work) {
   kernel::StepArrays& a = memory_.arrays();
@@ -237,9 +237,9 @@ Contour DpStepper::contour() const {
 
 /// Finds the vertices that passed through edges in the last drift. Returns whether muted contacts changed.
 bool DpStepper::follow_crossings(DropletState& state, double nearest_pair) {
-  // A pair whose vertex passed through the edge is at most as far apart now as the two moved. Since the last
-  // survey vertices may have become faster. Neighbours along the contour, which are not listed, pass through
-  // each other's edges in folds that close fast.
+  // When a vertex passes through an edge, the two are at most as far apart afterwards as they moved. Since
+  // the last survey, vertices may have become faster. Neighbours along the contour are not listed; they pass
+  // through each other's edges in folds that close fast.
   constexpr double faster = 3, fast = 0.3;
   const double way = 2 * fastest_relative_ * open_.length;
   const bool may_have_passed = faster * way >= nearest_pair || way >= fast * forces_->self_contacts().range();
@@ -290,7 +290,8 @@ void DpStepper::update_rates(const kernel::KickCoefficients& coefficients) {
     --rates_.steps_left;
     return;
   }
-  const double way = rates_.fastest * 2 * coefficients.half_step;  // distance of the fastest vertex in a step
+  const double way =
+      rates_.fastest * 2 * coefficients.half_step;  // distance that the fastest vertex moves in a step
   const double steps = 1 + farthest_way_per_rate * run_.drag.near_wall_cutoff / way;
   rates_.steps_left = static_cast<int>(std::min(most_steps_per_rate, steps)) - 1;
   rates_.h1 = coefficients.h1;
@@ -326,8 +327,8 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// Lets the interface slip along walls where the walls' limits are exceeded; there the limiting force acts on
-/// the vertices.
+/// Where the forces of walls would exceed their limits, lets the interface slip along these walls. There the
+/// limiting force acts on the vertices.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
   const std::vector<WallTouch>& touches = friction_.touches.find({n_, a.position.x.first, a.position.y.first},

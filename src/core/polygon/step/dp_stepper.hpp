@@ -17,15 +17,15 @@
 
 namespace clog {
 
-/// Contacts, speeds and stability are surveyed at least once in this number of steps.
+/// A survey finds contacts, speeds and stability. There is at least one survey in this number of steps.
 inline constexpr int most_steps_per_survey = 32;
-/// The rates of the near-wall drag are kept for at most this number of steps, and no vertex may move farther
-/// in these steps than this fraction of the near-wall cutoff
+/// The rates of the near-wall drag are kept for at most this number of steps. In these steps, no vertex may
+/// move farther than this fraction of the near-wall cutoff
 /// (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
 inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
 
-/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the DropletState alone
-/// determines how the droplet moves on.
+/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the motion that follows
+/// depends only on the DropletState.
 class DpStepper {
  public:
   /// @param run  resolved parameters
@@ -35,13 +35,13 @@ class DpStepper {
 
   /// Rebuilds the contact lists of a droplet.
   void start_afresh(const DropletState& state);
-  /// Moves a droplet by `num_steps` time steps of the run, or by more and shorter steps if these would be
-  /// unstable; stops if the droplet bursts. Returns the number of steps taken.
+  /// Moves a droplet by `num_steps` time steps of the run. If these steps would be unstable, it takes more
+  /// and shorter steps. It stops if the droplet bursts. Returns the number of steps taken.
   /// @param work  if not null, the work of drag and springs is added to it
   std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
-  /// Moves a droplet by the given steps, which need neither have the run's length nor be stable. Possible
-  /// contacts are surveyed before each entry of `all`. With near-wall drag, the pressure must not be
-  /// implicit.
+  /// Moves a droplet by the given steps. They may have other lengths than the run's steps, and may be
+  /// unstable. Possible contacts are surveyed before each entry of `all`. With near-wall drag, the pressure
+  /// must not be implicit.
   void move(DropletState& state, std::span<const Steps> all, Droplet::Work* work);
 
  private:
