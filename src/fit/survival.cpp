@@ -15,12 +15,12 @@
 namespace clog::fit {
 namespace {
 
-/// Fraction of the mean distance to which the test raises shorter distances, because Weibull's law excludes
-/// zero.
+/// Weibull's law excludes zero, so the test raises all distances to at least this fraction of the mean
+/// distance.
 constexpr double shortest_share = 1e-3;
 
-/// An interval that contains the root of a falling function, found by doubling and halving; nullopt if there
-/// is no root.
+/// An interval that contains the root of a decreasing function, found by doubling and halving; nullopt if
+/// there is no root.
 template <class Function>
 std::optional<std::pair<double, double>> bracket(const Function& falling) {
   constexpr int most_doublings = 200;  // 2^200 exceeds any ratio of two different doubles' logarithms
@@ -48,7 +48,7 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
   return sums;
 }
 
-/// Distances of all runs for the test: x = r/(longest r), at least a fraction of their mean.
+/// Distances of all runs for the test, x = r/(longest r), raised to at least a fraction of their mean.
 struct LogWays {
   double longest = 0;         ///< [sigma]
   std::vector<double> log_x;  ///< log x of every run
@@ -91,7 +91,7 @@ std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, doub
             [](const Observation& a, const Observation& b) { return a.distance < b.distance; });
   std::vector<SurvivalStep> steps;
   double probability = 1;
-  double variance_sum = 0;  // Greenwood's, of log P
+  double variance_sum = 0;  // sum in Greenwood's variance of log P
   for (std::size_t begin = 0; begin < sorted.size();) {
     std::size_t end = begin;
     int num_clogs = 0;
@@ -129,7 +129,8 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
     test.p_value = 0;
     return test;
   }
-  // The derivative of the profile likelihood by the shape; it falls from +infinity to a negative number.
+  // The derivative of the profile likelihood with respect to the shape. It falls from +infinity to a negative
+  // number.
   const auto score = [&](double shape) {
     const PowerSums sums = power_sums(ways.log_x, shape);
     return 1 / shape + ways.clog_logs / d - sums.power_log / sums.power;

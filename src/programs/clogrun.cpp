@@ -90,8 +90,8 @@ std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const 
   return {name.string() + ".mp4", name.string() + ".gif"};
 }
 
-/// Refuses options that name the same file. The files are written one after the other, so two equal names
-/// would otherwise be noticed only after the run.
+/// Refuses options that name the same file. The files are written one after the other, so a user would notice
+/// two equal names only after the run.
 void refuse_same_files(const cli::CommandLine& line) {
   std::map<std::filesystem::path, std::string> options;
   for (const std::string option : {"output", "write-obstacles", "frames"})

@@ -20,7 +20,7 @@ double to_milliseconds(double number) {
 
 }  // namespace
 
-/// Merges pairs of stretches.
+/// Merges pairs of intervals.
 void Activity::lengthen() {
   stretch_ *= 2;
   for (std::size_t i = 0; 2 * i < busy_.size(); ++i)

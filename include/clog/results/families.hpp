@@ -42,8 +42,7 @@ struct FamilyLine {
 /// The families of a group.
 struct Families {
   int num_ancestors = 0;
-  double num_daughters =
-      0;  ///< mean number of daughters per ancestor, including daughters that broke up again
+  double num_daughters = 0;  ///< mean number of daughters of all generations per ancestor
   std::vector<FamilyLine> lines;
   Diameters clogged;  ///< droplets that clogged
 };

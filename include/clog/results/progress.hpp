@@ -50,8 +50,7 @@ class Progress {
 
   console::StatusLine status_;
   sweep::GroupOf number_of_set_;
-  std::vector<SetTimes>
-      sets_;  // the running tasks of these sets, which are in running_, count as waiting here
+  std::vector<SetTimes> sets_;  // tasks in running_ count as waiting here
   std::int64_t num_tasks_ = 0;
   std::int64_t num_before_ = 0;
   int num_ranks_;

@@ -59,8 +59,7 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);
-  Eigen::Array2d push(
-      0, 0);  // the part with a root: the sum of stiffness * reach over the directions to the centres
+  Eigen::Array2d push(0, 0);  // the part of the force that needs a root
   Eigen::Array2d rest = scale * weight_;
   for (const Obstacle& obstacle : near_) {
     const Eigen::Array2d arm = place - Eigen::Array2d(obstacle.x, obstacle.y);

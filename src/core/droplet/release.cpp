@@ -27,8 +27,7 @@ Eigen::Array2d climb(const ObstacleArray& obstacles, Eigen::Array2d place) {
       const double angle = direction * std::numbers::pi / 4;
       const Eigen::Array2d trial = place + step * Eigen::Array2d(portable::cos(angle), portable::sin(angle));
       const double trial_room = clearance(obstacles, trial[0], trial[1], enough);
-      if (trial_room >
-          room + round_off) {  // along a wall, round-off alone would let the climb continue for ever
+      if (trial_room > room + round_off) {  // along a wall, round-off would never let it stop
         room = trial_room;
         place = trial;
         climbed = true;

@@ -253,8 +253,7 @@ double SelfCrossings::push_off(const Contour& contour, const Muted& muted, doubl
   const double distance = away.matrix().norm(), overlap = range - distance;
   if (overlap <= 0) return 0;
   constexpr double round_off = 1e-9;
-  if (distance >
-      round_off * range) {  // otherwise the vertex is on the edge, and the direction of the push is undefined
+  if (distance > round_off * range) {  // otherwise the push has no direction
     const std::array<double, 3> shares = {1, fraction - 1, -fraction};
     for (std::size_t k = 0; k < vertices.size(); ++k) {
       const Eigen::Array2d force = shares[k] * overlap / distance * away;

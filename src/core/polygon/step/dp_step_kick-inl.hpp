@@ -270,8 +270,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
   const bool keeps_kicked = coefficients.keeps_kicked;
   const double one_s = varying_rate ? 1 : 1 / (1 + coefficients.h1 * terms.rate);
   const V same_s = all(one_s), same_kept = all(one_s * (1 - coefficients.h2 * terms.rate));
-  KickVectors<varying_rate>
-      total{};  // an aggregate, because a constructor would not be compiled for the instruction set
+  KickVectors<varying_rate> total{};  // an aggregate: constructors are not compiled for the instruction set
   Corner last;
   last.length = all(a.length[-1]);
   last.tx = all(a.tangent.x[-1]);

@@ -290,8 +290,7 @@ void DpStepper::update_rates(const kernel::KickCoefficients& coefficients) {
     --rates_.steps_left;
     return;
   }
-  const double way =
-      rates_.fastest * 2 * coefficients.half_step;  // distance that the fastest vertex moves in a step
+  const double way = rates_.fastest * 2 * coefficients.half_step;  // distance of the fastest vertex in a step
   const double steps = 1 + farthest_way_per_rate * run_.drag.near_wall_cutoff / way;
   rates_.steps_left = static_cast<int>(std::min(most_steps_per_rate, steps)) - 1;
   rates_.h1 = coefficients.h1;

@@ -175,8 +175,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       double sum = zone.wall.wedge >= 0 ? here.on_wedge
                                         : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
-      Eigen::Array2d carried =
-          here.forward;  // coefficient of the present vertex's u in `sum`, times `forward`
+      Eigen::Array2d carried = here.forward;  // `forward` times the coefficient of the vertex's u in `sum`
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
         const Index next = around(vertex(j).vertex + step, n);
