@@ -16,7 +16,7 @@ INTERRUPTED = 75
 
 
 class Progress:
-    """Shows how close the best simulations are so far: the largest deviation among the best simulations of all trials.
+    """Shows the quality of the best simulations so far: the largest deviation among the best simulations of all trials.
     Several threads may report simulations."""
 
     def __init__(self, num_trials: int) -> None:

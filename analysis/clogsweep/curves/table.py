@@ -108,8 +108,8 @@ def comma_separated(answer: dict[str, Any]) -> str:
 
 
 def peaks(answer: dict[str, Any]) -> str:
-    """The peaks as CSV, with a line for every curve. The line contains the peak, unless the curve may be highest at an
-    end of the range of values."""
+    """The peaks as CSV, with a line for every curve. The peak is missing if the curve may be highest at an end of the
+    range of values."""
     shared, names = list(answer["curves"][0]["shared"]), [f"{name}{end}" for name in [*answer["keys"], ALL[0]] for end in ("", "_lower", "_upper")]
     found = [(curve["shared"], curve["peak"], curve["peak"]["probability_between_borders"]) for curve in answer["curves"]]
     return _comma_separated([[*shared, *names, "probability_between_borders"], *(

@@ -54,7 +54,7 @@ def are_alike(one: Any, other: Any) -> bool:
 
 
 def colour_of(group: dict[str, Any], groups: Groups) -> str:
-    """The colour of the curve that has the values of a measured group, or a dark grey if the values choose no curve."""
+    """The colour of the curve that has the values of a measured group, or dark grey if no curve has these values."""
     columns = {fits.DROPLETS[name]["key"] if name in fits.DROPLETS else name: name
                for name in groups.curve_parameters()}
     values = {columns[key]: value for name, value in group.items() if (key := name.replace("-", "_")) in columns}
@@ -64,7 +64,7 @@ def colour_of(group: dict[str, Any], groups: Groups) -> str:
 
 
 def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
-    """Draws a star with an interval for each group with a value of the abscissa, in the colour of the curve that has
+    """Draws a star with an interval for each group that has a value of the abscissa, in the colour of the curve with
     the group's other values. A group without a value of the abscissa becomes a band over the whole range of the
     abscissa. If no droplet of a group clogged, an arrow points up from the lower bound."""
     drawn = False

@@ -42,7 +42,7 @@ class Sweep:
     - `droplets`: table with a row for each member of a family, with break-up=daughters
     - `attributes`: version, commit, config, command line
 
-    All other methods run the programs on the file as it is now.
+    All other methods run the programs on the present file.
     """
 
     def __init__(self, path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> None:

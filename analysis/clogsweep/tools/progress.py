@@ -1,5 +1,5 @@
 """Shows the progress of a script on the standard error. On a terminal this is one line that is redrawn. Elsewhere a new
-line appears now and then."""
+line is printed from time to time."""
 
 import sys
 import time
@@ -39,7 +39,7 @@ class StatusLine:
 
 
 def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
-    """Yields the items. Now and then it shows the number of finished items and the remaining time."""
+    """Yields the items. From time to time it shows the number of finished items and the remaining time."""
     line = StatusLine()
     for number, item in enumerate(items, start=1):
         yield item
