@@ -33,8 +33,8 @@ double num_places(const ObstacleParameters& parameters) {
   return parameters.boxes * per_side * per_side;
 }
 
-/// Name under which processes of this executable share the array. Other executables do not find it, because
-/// they may build or arrange arrays differently.
+/// Name under which processes of this executable share the array. Other programs do not find it, because they
+/// may build or arrange arrays differently.
 std::optional<std::string> shared_name(const RunParameters& run) {
   struct stat executable;
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;

@@ -42,7 +42,7 @@ def type_of(column):
 
 def columns(schema):
     """The list of columns. One paragraph names all columns that have the name and the value of a key. Each other column
-    has an entry. Columns whose meanings differ only in numbers share an entry."""
+    has an entry. Columns with meanings that differ only in numbers share an entry."""
     key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
     named, rows = [], {}
     for column in schema["columns"]:

@@ -1,4 +1,4 @@
-"""Draws all figures of the article from small sweeps."""
+"""Draws all figures of the article (Cheng et al.) from small sweeps."""
 
 import math
 import unittest
@@ -48,7 +48,7 @@ class Figures(test_figures.Drawn):
         self.assertEqual({point["obstacle_filling"] for point in points}, {"density", "saturated"})
 
     def test_single_runs_are_drawn_as_they_were_run(self):
-        # The number of runs for the figures of single droplets. Figure A1 needs no runs of its own.
+        # The number of runs for the figures of single droplets. Figure A1 needs no separate runs.
         self.assert_single_runs(["1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "C2", "D"],
                                 1 + 1 + 2 + 6 + 1 + 3 + 14 + 2 + 5, "7b", "3", "B2")
 

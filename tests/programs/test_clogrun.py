@@ -355,7 +355,7 @@ class Run(ProgramTest):
                          self.succeed("clogrun", "array", *SMALL, "max-time=0.1", "--dry-run", "--output", "run.h5").stdout)
         self.assertIn("on this machine", told)
         samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", told).groups())
-        # The output is a config. The same run must follow from it.
+        # The output is a config. It must give the same run.
         self.write("told.cfg", told)
         self.succeed("clogrun", "array", "--config", "told.cfg", "--polygon-interval", 5, "--output", "run.h5")
         with h5py.File(self.folder / "run.h5") as file:

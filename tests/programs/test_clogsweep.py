@@ -17,9 +17,9 @@ import pandas
 import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
-# Columns that are no results. These columns state where and how fast a row was computed.
+# Columns that are not results: they state where and how fast a row was computed.
 CIRCUMSTANCES = ["wall_seconds", "processor_seconds", "rank", "host"]
-# A library that writes to the file FORK_LOG which process has forked, and which has started MPI.
+# A library that writes to the file FORK_LOG which process has forked, and which process has started MPI.
 FORK_LOGGER = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -402,7 +402,7 @@ class Isolated(ProgramTest):
         return process
 
     def children_of(self, pid):
-        # `pgrep` is not used here, because on a busy machine a run might end before `pgrep` has looked.
+        # `pgrep` is not used here: on a busy machine a run might end before `pgrep` has searched for it.
         children = []
         for thread in glob.glob(f"/proc/{pid}/task/*/children"):
             with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # the thread may have ended since
@@ -452,7 +452,7 @@ class Isolated(ProgramTest):
         sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
         process = self.start(*sweep)
         computing = self.computing_process(process)
-        # Waits for the first snapshot. Without a snapshot the resumed run would start from its beginning.
+        # Waits for the first snapshot. Without a snapshot the resumed run would start at its release.
         self.wait_for(lambda: table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any())
         os.kill(computing, signal.SIGSTOP)
         time.sleep(0.5)  # During this time the rank requests reports.
@@ -463,7 +463,7 @@ class Isolated(ProgramTest):
         self.assertGreater(rows.distance[0], 0, "the last report counts")
         self.wait_for_end_of([computing])
         hung_at = rows.distance[0]
-        # The process stops again before its first report. So its state must be the state in the stored row.
+        # The process stops again before its first report. So its state must be that of the stored row.
         process = self.start(*sweep[:2], "--report-seconds=100")
         os.kill(self.computing_process(process), signal.SIGSTOP)
         process.send_signal(signal.SIGTERM)

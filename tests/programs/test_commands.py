@@ -99,7 +99,7 @@ class Meant(ProgramTest):
             done = self.run_program("clogsweep", "receding-angle=140,180", f"advancing-angle={advancing}",
                                     "--output", "s.h5")
             self.assertEqual((done.returncode, done.stderr), (2, f"clogsweep: {exchange}{end}"))
-        # The refused key need not be a list itself, and the meant value is no decimal.
+        # The refused key need not be a list itself, and the intended value is not a decimal.
         self.refuse("clogsweep", "model=dp,sp", "vertices=64", "--output", "s.h5",
                     words=["invalid vertices=64",
                            "it meets each value of model; to pair values, see clogsweep --points"])

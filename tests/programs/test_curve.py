@@ -183,7 +183,7 @@ class Curve(ProgramTest):
                           lengths=tensions)
         self.assertEqual([curve["shared"] for curve in self.curve("--key=line-tension")["curves"]],
                          [{"obstacle_gap": 0.3}, {"obstacle_gap": 0.4}])
-        # Densities that are the same for all gaps are no shares.
+        # Densities that are equal for all gaps are not shares.
         rows = self.sweep("line-tension=1", *FAR, gaps, "obstacle-density=0.1,0.2", lengths=one_length)
         self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]],
                          [{"obstacle_density": 0.1}, {"obstacle_density": 0.2}])

@@ -66,7 +66,7 @@ class Damage(ProgramTest):
         self.assertIn("row 1 (task 1) is not as it was written\ns.h5: 5 undamaged rows, 1 fault\n", verified.stdout)
         with self.assertRaises(stored.Damaged):
             stored.read_rows(self.file)
-        # Readers that do not know our checksums are protected by HDF5's own checksum of the table's chunks.
+        # HDF5's own checksum of the table's chunks protects readers that do not know our checksums.
         with self.assertRaises(OSError), h5py.File(self.file) as file:
             file["runs"][:]
         with pandas.HDFStore(self.file, "r") as store, self.assertRaisesRegex(Exception, "read"):

@@ -1,4 +1,4 @@
-"""Tests devices of a user: files of circles in any form, walls, entrance and exit, drawings of devices, and pictures of
+"""Tests devices of users: files of circles in any form, walls, entrance and exit, drawings of devices, and pictures of
 devices."""
 
 import contextlib
@@ -238,7 +238,7 @@ class Devices(Walls):
         for command, output in [("device", "device"), ("report", "report.html")]:
             self.draw(command, "s.h5", "--output", output, "--programs", BIN)
         self.assertTrue("2 of 2 runs finished (2 passed)" in (self.folder / "report.html").read_text())
-        # The file is merged with groups whose droplets do pass.
+        # The file is merged with groups in which droplets do pass.
         self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance",
                      "entrance-from=4.5", "entrance-to=5.5", "exit=6", "line-tension=1", "vertices=64", "max-time=500",
                      "seeds=1..2", "--output", "t.h5")
@@ -388,7 +388,7 @@ class Devices(Walls):
         np.testing.assert_allclose(exported["diameter_mm [mm]"] * exported["length [sigma]"], 2.8, rtol=1e-9)
         self.assertEqual((set(exported["angle_degrees [degrees]"]), exported["distance [sigma]"].tolist()),
                          ({90}, rows["distance"].tolist()))
-        # Other devices are no device of several sizes.
+        # Another device does not become a device of several sizes.
         self.write("other.csv", "# units=um droplet=200um\nx,y,diameter\n700,500,100\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=other.csv", *keys[1:], "seeds=1", "--output", "other.h5")
         self.succeed("clogsweep", "merge", "s.h5", "other.h5", "--output", "both.h5")
@@ -604,7 +604,8 @@ class Drawings(Analysis):
     def test_holes_that_were_cut_into_pieces_are_counted_as_at_least(self):
         import gdspy
 
-        # Two pieces, whose border cuts the third of five holes. With a gap between them, they are not united.
+        # There are two pieces, and their border cuts the third of five holes. With a gap between them, the pieces are
+        # not united.
         holes = [gdspy.Round((400 + 500 * i, 600), 50, number_of_points=64) for i in range(5)]
         for gap, number in ((1, "at least 4"), (0, "5")):
             pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (left + 1400 - gap, 1200)), holes, "not", max_points=10000)
@@ -1266,7 +1267,7 @@ class OtherTools(Analysis):
                                         70), (f'width="100%" height="100%" {view.format(500, 200)}', 500, 200)):
             for has_frame in (True, False):
                 seen = [(left + x, top + y) for x, y in ((800, 300), (1600, 900), (2400, 600))]
-                # Beyond each side and corner; an edge that only touches the page is outside, too.
+                # Shapes beyond each side and corner. An edge that only touches the page is outside, too.
                 for places in ([(3651, 600)], [(-51, 600)], [(800, 1300), (900, 2000)], [(800, -50)], [(3700, 1300), (4500, 1400), (-700, -900)], [(3640, -40)]):
                     beyond = [(left + x, top + y) for x, y in places]
                     self.write("device.svg", f'<svg xmlns="http://www.w3.org/2000/svg" {page}>' + frame.format(left, top) * has_frame + "".join(posts.format(*place) for place in [*beyond, *seen]) + "</svg>")
@@ -1328,9 +1329,9 @@ class OtherTools(Analysis):
                 self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes")
                 rows = np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)
                 np.testing.assert_allclose(rows[np.lexsort((rows[:, 1], rows[:, 0]))], expected, rtol=1e-3)
-                # Without --holes, outlines within the outline are posts, as before.
+                # Without --holes, outlines within the outline are still posts.
                 np.testing.assert_allclose(self.circles_of("device.svg"), expected, rtol=1e-3)
-        # Boundaries that turn alike leave no hole, and neither does a path that is not filled.
+        # Boundaries with the same direction leave no hole. Neither does a path that is not filled.
         (self.folder / "posts.csv").unlink()
         for sweep, paint in ((1, ""), (0, 'fill="none" stroke="black"')):
             self.write("device.svg", page.format(f'<path {paint} d="{edge}{turned(4, 3, sweep)}"/>'))
@@ -1610,7 +1611,7 @@ class OtherTools(Analysis):
         image.save(self.folder / "bar.png")
         self.refuse_analysis("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "cut",
                              words=["not round", "cut scale bars", "--region"])
-        # Whoever follows the message gets the bar as a post, and is told where.
+        # If users follow the message, the bar becomes a post, and a message says so.
         told = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred",
                          "--as-circles").stdout
         self.assertIn(f"{len(ROW) + 1} posts, device", told)
@@ -1661,7 +1662,7 @@ class OtherTools(Analysis):
         self.assertIn("2 posts left out that reach into the picture from outside", told)
         self.assertIn("3 posts, device 9 x 3 droplet diameters", told)
         self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), 3)
-        # Where the user drew an edge, a post with its centre on the edge remains an error.
+        # If the user drew an edge, a post with its centre on the edge is still an error.
         drawing, space = self.dxf()
         for x, y in ((800, 300), (1600, 1200)):
             space.add_circle((x, y), 50)

@@ -1,7 +1,7 @@
-"""Tests that every reader counts failed runs up to their last sound check, or states the number of failed runs.
+"""Tests that every reader counts failed runs up to their last sound check, or prints the number of failed runs.
 
-The tests write failures into the rows of sound sweeps. What a failed droplet did after its last sound check must not
-matter, so `distance` is absurd in these rows.
+The tests write failures into the rows of sound sweeps. The course of a failed droplet after its last sound check must
+have no effect, so `distance` is absurd in these rows.
 """
 
 import contextlib
@@ -41,7 +41,7 @@ def without_result(rows, which):
 
 class Readers(Analysis):
     def setUp(self):
-        """Makes a sweep of which at every line tension three droplets fail, two are interrupted, and seven clog."""
+        """Makes a sweep. At every line tension three droplets fail, two are interrupted, and seven clog."""
         super().setUp()
         self.copy_sweep("s.h5", *SWEEP)
         stored_rows.change(self.folder / "s.h5", self.spoil)
@@ -127,7 +127,7 @@ class Readers(Analysis):
         text = self.succeed("clogfit", "curve", "s.h5").stdout
         self.assertIn("  (12 of 48 runs failed, and count as not clogged up to sound_distance)\n", text)
         self.assertIn("  (4 of 4 points: some runs are in progress", text)
-        # A sweep without failures and doubts says nothing of them.
+        # Without failures and doubts, there is no message about them.
         rows = table(self.copy_sweep("s.h5", *SWEEP))
         exponential = -4 * np.log(1 - (rows.seed - 0.5) / 12)
         stored_rows.change_columns(self.folder / "s.h5", status=b"clogged", clogged_by=b"certified", mechanism=b"squeezed", failed_by=b"none",
@@ -358,7 +358,8 @@ class Searches(Analysis):
     """Tests commands that ask how droplets end."""
 
     def run_and_fail(self, failures):
-        """@return a function that runs a program, and lets those runs of its sweep fail that failures(rows) chooses"""
+        """@return a function that runs a program. It makes those runs of the program's sweep fail that failures(rows)
+        chooses."""
         original = programs.run_program
 
         def run(program, *words):

@@ -1,4 +1,4 @@
-"""Tests droplets that break up and go on as daughters, from the sweep to its pictures."""
+"""Tests droplets that break up and continue as daughters, from the sweep to its pictures."""
 
 import json
 import os

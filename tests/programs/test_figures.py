@@ -160,8 +160,8 @@ class Parts(unittest.TestCase):
         np.testing.assert_allclose([entry["delta_v"] for entry in plate.data], 0, atol=1e-12)
 
     def test_a_legend_stays_off_error_bars(self):
-        # The error bars fill the axes, completely or except for the lower right. The legend would have room above the
-        # points alone, but not above the bars.
+        # The error bars fill the axes completely, or everywhere except at the lower right. The legend would have room
+        # above the points, but not above their bars.
         for lowest in (6, 0):
             axes = style.new_figure().subplots()
             right = np.arange(12) > 8
@@ -335,7 +335,7 @@ class Figures(Drawn):
                 self.succeed("clogsweep", "--config", config, "--print-config")
 
     def test_soft_droplets_have_fine_meshes_or_their_own_inertia(self):
-        """The meshes are for droplets without friction, the inertia for those that slide off obstacles fast."""
+        """The meshes are for droplets without friction, the inertia for droplets that slide off obstacles fast."""
         for points in (ROOT / "jobs/figures").glob("*.csv"):
             table = pandas.read_csv(points)
             column, value, limit = ("inertia", 1, 0.049) if "robust" in points.name else ("vertices", 512, 0.1)

@@ -85,8 +85,8 @@ class Lengths(ProgramTest):
                                ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
-        # The table of the Python module. The expected values come from R's summary(..., times=161), and from the last
-        # step of the other group, for which R gives no bounds either.
+        # The table of the Python module. Some expected values come from R's summary(..., times=161). The others come
+        # from the last step of the other group; R gives no bounds for this step, either.
         groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
         known = types.SimpleNamespace(output={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
@@ -162,7 +162,7 @@ class Lengths(ProgramTest):
                 self.refuse("clogfit", *command, words=[f"own.csv line 1: column '{name}'", "outcome", "delete it"])
 
     def test_labels_with_only_clogged_or_only_moving_droplets_are_told(self):
-        """A concentration at which nothing clogs is honest, so this is no error."""
+        """It is no error if nothing clogs at one concentration."""
         def told(*lines):
             self.write("own.csv", "distance [mm],clogged,x,y\n" + "".join(f"{line}\n" for line in lines))
             return self.succeed("clogfit", "lengths", "own.csv").stderr
@@ -193,7 +193,7 @@ class Lengths(ProgramTest):
             unknown = (60, None) if unit == "mm" else (None, 30)
             self.write("own.csv", f"diameter [um],distance [{unit}],clogged\n" + "".join(
                 f"{diameter and 1000 * diameter},{way / to_mm[diameter]!r},1\n" for diameter, way in rows))
-            for lab in ([], ["--lab", "lab.cfg"]):  # The laboratory's droplet of 2 mm need not be the one of an empty cell.
+            for lab in ([], ["--lab", "lab.cfg"]):  # An empty cell need not mean the laboratory's droplet.
                 found = {group["diameter"]: (group["clogging_length_mm"], group["clogging_length"]) for group in self.lengths("own.csv", *lab)["groups"]}
                 self.assertEqual(found, {None: unknown, 1: (10, 10), 2: (20, 10), 2.5: (50, 20)})
                 text = self.succeed("clogfit", "lengths", "own.csv", *lab).stdout
@@ -217,7 +217,7 @@ class Lengths(ProgramTest):
                                   ("diameter [mm]", "-2", ["above 0"]), ("angle [deg]", "1,000", ["'1,000'"]), ("angle", "flat", ["line 2: angle is 'flat'", "empty"])]:
             self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [mm];clogged;{head}\n12.5;1;{cell}\n"), words=["own.csv", *words])
             self.refuse("clogfit", "lengths", self.write("own.csv", f'{head},distance [mm],clogged\n"{cell}",12,1\n'), words=["own.csv", *words])
-        # What is no table of distances at all is not about a diameter.
+        # A table without distances gets no message about a diameter.
         self.refuse("clogfit", "lengths", self.write("own.csv", "x,y,diameter\n1,2,3\n"),
                     words=["own.csv line 1: has no column distance"])
 
@@ -461,7 +461,7 @@ class Beside(ProgramTest):
         self.write("other.csv", "distance [sigma],clogged\n10,1\n")
         self.assertEqual([one["ratio"] for one in self.compare("own.csv", "other.csv")],
                          [10 / 3, 10 / (10 / 2.004), 1, 10 / 15])
-        # The picture leaves these droplets out, too.
+        # The picture excludes these droplets, too.
         for options, kept in ((["--lab", self.folder / "lab.cfg"], [(2, 3), (2.004, 10 / 2.004)]), ([], [(2, 3), (2.004, 10 / 2.004), (4, 10), (4, 15)])):
             with contextlib.redirect_stderr(io.StringIO()) as said:
                 own = measured.lengths_of(self.folder / "own.csv",

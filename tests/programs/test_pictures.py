@@ -86,7 +86,7 @@ class Calls(Analysis):
             self.assertTrue(18 < lower < math.degrees(math.asin(1 / 3)) < upper < 21.1 and runs == 4, printed)
 
     def test_a_run_that_is_too_short_does_not_count_for_a_critical_angle(self):
-        # After 30 t0 the droplet has moved by 3 diameters at most: straight on it would have crossed no row.
+        # After 30 t0 the droplet has moved by at most 3 diameters. On a straight path it would have crossed no row.
         self.succeed("clogsweep", "obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1", "terminal-speed=0.1",
                      "vertices=64", "box=200", "max-time=30,1000", "seeds=1", "lattice-angle=15,25", "--output", "s.h5")
         printed = self.draw("critical-angle", "s.h5", "--format", "csv", "--programs", BIN).stdout

@@ -116,8 +116,8 @@ class Resumed(SweepTest):
         self.assertFalse((self.folder / "s.h5").exists())
 
     def hold_while_it_runs(self, ranks):
-        """Starts a sweep and stops its ranks. @return the sweep's process and the processes of the ranks, or nothing if
-        the sweep ended earlier"""
+        """Starts a sweep and stops its ranks. @return the sweep's process and the processes of the ranks; nothing if
+        the sweep ended before"""
         process = self.start(*SLOW, ranks=ranks)
 
         def runs():
@@ -465,7 +465,8 @@ class Resumed(SweepTest):
         failed = rows[rows.status == "failed"]
         self.assertGreater(len(failed), 0, done.stderr)
         self.assertEqual((set(failed.failed_by), set(failed.attempt)), ({"crossing"}, {1}))
-        # The crossing was seen at most 2112 steps, 13 t0, after the last sound check, in which droplets sink 0.4 sigma.
+        # The crossing was detected at most 2112 steps (13 t0) after the last sound check. In this time droplets sink by
+        # 0.4 sigma.
         apart = (failed.sound_distance - failed.distance).abs()
         self.assertTrue(((failed.sound_distance > 0) & (apart > 0) & (apart < 1)).all())
         self.assertNotIn("will be tried again", done.stderr)
@@ -483,8 +484,8 @@ class Resumed(SweepTest):
 
 
 class Batch(ProgramTest):
-    """Tests the scripts for batch systems. The commands of these systems are replaced by commands that only write down
-    how they were called."""
+    """Tests the scripts for batch systems. Other commands replace those of these systems, and only record their
+    arguments."""
 
     def script(self, name, *arguments, **environment):
         for command in ("scontrol", "qsub"):

@@ -483,7 +483,7 @@ class RandomDevices(ProgramTest):
         self.assertGreater(self.num_across_border, 3)
 
     def test_no_droplet_starts_within_the_outline_of_a_post(self):
-        # A ring and a square of circles in rows, wide enough for a droplet, and a ring that is open.
+        # There are a ring and a square of circles in rows, both with room for a droplet inside, and an open ring.
         for model, more in self.KEYS.items():
             places = self.random.permutation([(3, 3), (3, 9), (9, 6)])
             ring, square, open_ring = places + self.random.uniform(-0.5, 0.5, 2)

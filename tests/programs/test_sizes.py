@@ -218,7 +218,7 @@ class Sizes(LaboratoryTest):
         self.assertEqual(len(self.fit("s.h5")["groups"]), len(SETS))
 
     def test_laboratories_with_the_same_runs_share_them(self):
-        # Tilts differ, but no run depends on them.
+        # Tilts differ, but runs do not depend on them.
         keys = ["line-tension=0.5", "terminal-speed=0.03", "obstacle-gap=0.4sigma", "vertices=64", "box=20sigma", "max-time=40", "seeds=1..2"]
         self.sweep(*keys, diameter="0.8 mm", angle="20 deg")
         before = table(self.folder / "s.h5")
@@ -324,9 +324,9 @@ class Sizes(LaboratoryTest):
             self.write("own.csv", f"distance [mm],clogged,{diameter},{angle}\n3,1,{1.6 * factor},20\n5,1,{1.6 * factor},20\n4,0,{0.8 * factor},45\n")
             found = json.loads(self.succeed("clogfit", "compare", "own.csv", "s.h5", "--format", "json").stdout)
             self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
-            # These follow from the droplet, so they would only widen the table.
+            # These parameters follow from the droplet, so they would only widen the table.
             self.assertFalse({"laboratory", "line_tension", "obstacle_gap"} & set(found["comparisons"][0]))
-        # Friction that differs between the sizes does not follow from them.
+        # Friction that differs between the sizes does not follow from the sizes.
         for size, friction in [("0.8 mm", "0"), ("1.6 mm", "0.3")]:
             self.sweep(*ARRAY, "preset=elastic", f"friction={friction}", output=f"{friction}.h5", diameter=size,
                        angle="20 deg")
@@ -388,7 +388,7 @@ class Sizes(LaboratoryTest):
         for point in found["curves"][0]["points"]:
             self.assertAlmostEqual(point["total_distance"], point["diameter_mm"] * groups[point["diameter_mm"]]["total_distance"])
         self.assertEqual(json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)["keys"], found["keys"])
-        # The same laboratory in other words is one curve, with the same points.
+        # The same laboratory in other words gives the same curve, with the same points.
         self.assertIn("nothing left to do",
                       self.sweep(*keys, diameter="800 um, 1.0 mm, 1200 um, 0.16 cm", angle="20.0 deg").stderr)
         again = json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)
@@ -422,7 +422,7 @@ class Sizes(LaboratoryTest):
 
     def test_a_lattice_is_drawn_over_the_diameter_with_the_tangent_of_its_rows(self):
         lattice = ["obstacle-layout=lattice", *ARRAY[:2], "vertices=64", "box=15", "max-time=40", "seeds=1"]
-        # In this box, lattices for the two droplets can be at 14.93 and 15.07 degrees.
+        # Lattices for the two droplets fit this box at 14.93 and at 15.07 degrees.
         for name, angles, tangents in [("tilted", "15", [2 - math.sqrt(3)]),
                                        ("both", "lin(0,15,2)", [2 - math.sqrt(3)]), ("straight", "0", [])]:
             with self.subTest(name):
@@ -533,7 +533,7 @@ class Mixtures(LaboratoryTest):
 
     @staticmethod
     def outcomes(diameter, seed):
-        """The droplets of a seed go about equally far, in units of their mean distance."""
+        """The droplets of a seed travel about equally far, in units of their mean distances."""
         common, own = np.random.default_rng(seed).exponential(), np.random.default_rng([seed, int(10 * diameter)]).random()
         way = {0.8: 4, 1.6: 9}[diameter] * (common + 0.1 * own)
         if seed in (3, 55):
@@ -561,7 +561,8 @@ class Mixtures(LaboratoryTest):
         return runs.sort_values(["way", "clogged"], ascending=[True, False])
 
     def estimates(self, runs, times, places):
-        """Length and P(r) of resamples. @param times  how often each seed counts: by seed, a number for each resample"""
+        """Length and P(r) of resamples. @param times  by seed: for each resample, the number of times that the seed
+        counts"""
         way = clogs = probability = 0
         for size, share in self.SHARES.items():
             own = self.in_order(runs[runs["size"] == size])
@@ -578,7 +579,7 @@ class Mixtures(LaboratoryTest):
         return way / clogs, probability
 
     def resampled(self, runs, places):
-        """The same for 8000 resamples of seeds."""
+        """Length and P(r) of 8000 resamples of seeds."""
         strata = {}
         for seed, own in runs.groupby("seed"):
             strata.setdefault(tuple(sorted(own["size"])), []).append(seed)
@@ -618,8 +619,8 @@ class Mixtures(LaboratoryTest):
     def test_a_mixture_has_the_length_the_curve_and_the_intervals_of_numpy(self):
         self.rows("both.h5", "1..40", "0.8 mm, 1.6 mm", self.outcomes)
         shared = self.check("both.h5")
-        # The runs of a seed go about equally far. With the same outcomes for other seeds, these chances are
-        # independent, so the interval is narrower.
+        # The runs of a seed travel about equally far. If the outcomes are assigned to other seeds, chance acts on both
+        # groups independently, so the interval is narrower.
         self.rows("small.h5", "1..40", "0.8 mm", self.outcomes)
         self.rows("large.h5", "101..140", "1.6 mm", lambda diameter, seed: self.outcomes(diameter, seed - 100))
         disjoint = self.check("small.h5", "large.h5")
@@ -635,7 +636,7 @@ class Mixtures(LaboratoryTest):
                                r"lambda = [0-9.]+ \([0-9.]+ \.\. [0-9.]+\) mm, 95 %\n$")
         half = self.fit("both.h5", *self.MIXTURE, "--confidence", "0.5")["mixture"]
         self.assertLess(half["clogging_length_upper"] - half["clogging_length_lower"], wide / 2)
-        # A share of 1 is the group itself.
+        # A share of 1 gives the results of the group itself.
         pure = self.fit("both.h5", "--mixture", "diameter=0.8mm:1,1.6mm:0")
         group = next(group for group in pure["groups"] if group["diameter_mm"] == 0.8)
         self.assertAlmostEqual(pure["mixture"]["clogging_length"], group["clogging_length_mm"], places=12)

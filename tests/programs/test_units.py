@@ -25,7 +25,7 @@ from clogsweep.tools import rounded  # noqa: E402
 ARTICLE = [("3.5 mm", "28 deg", "7 mm/s", (0.08, 0.006), (0.57, 0.01)),
            ("1.98 mm", "8.5 deg", "0.97 mm/s", (0.028, 5e-4), (5.80, 0.07)),
            ("3.30 mm", "5.0 deg", "1.1 mm/s", (0.032, 5e-4), (3.47, 0.05))]
-FITTED = [0.16, 1.7, 1.08]  # Gamma* of these three droplets in the article.
+FITTED = [0.16, 1.7, 1.08]  # Gamma* of these three droplets in the article (Cheng et al.).
 TENSION = "9.6 mN/m"  # The article states "about 10 mJ/m^2". This value gives the printed Gamma_exp.
 
 
@@ -161,7 +161,7 @@ class Units(ProgramTest):
         self.assertEqual((json.loads(done.stdout)["laboratory"], done.stderr), (before["laboratory"], ""))
 
     def test_speeds_are_those_of_the_runs(self):
-        # The laboratory's droplet falls at 30 mm/s; the runs have another speed.
+        # The laboratory's droplet falls at 30 mm/s. The runs have another speed.
         self.lab(speed="30 mm/s")
         for keys, speed in ((["--lab", "lab.cfg",
                               "terminal-speed=1mm/s"], 1), ([], 0.03 * 3.5 / self.units("lab.cfg")["time_s"])):
@@ -191,7 +191,7 @@ class Units(ProgramTest):
         for name, value in known.items():
             if isinstance(value, float):
                 self.assertEqual(value, float(f"{value:.12g}"), name)
-        # Runs have a Gamma of four digits.
+        # Runs have a Gamma that is rounded to four digits.
         self.succeed("clogsweep", "--lab", "lab.cfg", *QUICK, "seeds=1", "--output", "s.h5")
         group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
         self.assertEqual((group["tension_mN_per_m"], group["angle_degrees"]), (3, 30))

@@ -1,4 +1,4 @@
-"""Tests that messages name the remedy of the mistake that the user made."""
+"""Tests that messages name the remedy for the user's mistake."""
 
 import unittest
 

@@ -25,7 +25,7 @@ class EventsTest : public testing::Test {
     settings.set("seeds", seeds);
     return settings;
   }
-  /// A file that contains all runs of these seeds, none of which has started.
+  /// A file that contains all runs of these seeds. None of the runs has started.
   static store::SweepFile file_of(const std::string& seeds) {
     const sweep::Settings settings = settings_of(seeds);
     const sweep::Plan plan(settings);

@@ -141,8 +141,8 @@ void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
 }
 
 void what_fails_everywhere_is_tried_once(const scheduler::Communicator& ranks) {
-  // Half of the tasks cross themselves or diverge. They are results: no second attempt, and no rank is
-  // blamed.
+  // Half of the tasks cross themselves or diverge. These are results: there is no second attempt, and no rank
+  // is at fault.
   const auto make_job = [](std::int64_t task, std::span<const std::byte>) {
     return std::make_unique<FailingJob>(task, task % 2 == 0,
                                         task % 4 == 0 ? FailedBy::crossing : FailedBy::divergence);

@@ -64,7 +64,7 @@ inline std::vector<std::string> hosts_of_ranks(int num_ranks, int ranks_per_host
   return hosts;
 }
 
-/// A sweep of one round, with so many ranks on each host.
+/// A sweep of one round with this number of ranks on each host.
 inline scheduler::SweepEnd run_once(const scheduler::Communicator& ranks, const scheduler::TaskOrder& tasks,
                                     const sweep::JobFactory& make_job, const scheduler::SweepEvents& events,
                                     bool master_computes,

@@ -334,7 +334,7 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
 }
 
 TEST(RunJob, GivesTheSameRowInASharedArray) {
-  // A run of a droplet that travels far among obstacles. The outcome of the run does not depend on the last
+  // A droplet of this run travels far among obstacles. The outcome of the run does not depend on the last
   // bits.
   const Plan plan(settings_of({{"line-tension", "0.1"},
                                {"obstacle-density", "1"},

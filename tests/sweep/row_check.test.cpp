@@ -56,7 +56,7 @@ const std::vector<Keys> sweeps = {
     {{"max-time", "200"}, {"model", "sp"}, {"wall-stiffness", "100"}, {"terminal-speed", "100"}},
 };
 
-/// The row of a stiff polygon that has clogged. So it has all results.
+/// The row of a stiff polygon that has clogged. It has all results.
 const RunRow& clogged() {
   static const RunRow row = row_of(sweeps.front());
   return row;

@@ -37,7 +37,6 @@ struct LengthRatio {
 /// and at least ten pairs are unlike. With fewer pairs, the coverage of the interval is too low
 /// (docs/notes/2026-11-24-paired-intervals.md).
 /// @param here, there  all runs, including those of pairs
-/// @param here, there  all runs, those of pairs included
 /// @throws std::invalid_argument unless 0 < confidence < 1
 LengthRatio fit_length_ratio(std::span<const Observation> here, std::span<const Observation> there,
                              std::span<const Pair> pairs, double confidence = 0.95);

@@ -113,7 +113,6 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 /// @param scales  units of the runs' laboratories. If there are several laboratories, and the two sides of
 /// each comparison have the same droplet, lengths are in mm. The droplet's diameter [mm] and tilt [degrees]
 /// then name the comparison, in place of the columns that follow from them.
-/// follow from them, and lengths are in mm.
 /// @throws std::invalid_argument if there are fewer than two sides
 /// @throws Error if two sides have no value in common, or if it is not clear which parameter sets belong
 /// together

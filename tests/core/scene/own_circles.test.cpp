@@ -288,7 +288,8 @@ TEST(OwnCircles, LetDropletsStartWithinTheBoxWhereverTheyAre) {
         ASSERT_GE(in_file.minCoeff(), 0);
         ASSERT_LT(in_file[0], obstacles.length);
         ASSERT_LT(in_file[1], obstacles.box);
-        // The nearest circle in the file is as far as the nearest one in the array; a soft disk overlaps it.
+        // The nearest circle has the same distance in the file and in the array. A soft disk overlaps this
+        // circle.
         ASSERT_NEAR(room_at(in_file, obstacles),
                     std::min(clearance(device, place[0], place[1], 12), room_at(in_file, obstacles)), 1e-9);
         const double least_room = model == Model::dp ? 0 : -1;

@@ -35,6 +35,7 @@ struct DropletModel {
   /// Width of the narrowest passage that the droplet's points resolve [sigma].
   double (*narrowest)(const RunParameters& run);
   /// Computes the automatic values. Refuses given values that contradict them.
+  /// @param sharpest_bend  see Scene
   /// @throws Error
   void (*resolve)(RunParameters& run, double sharpest_bend);
 

@@ -45,8 +45,8 @@ class WallContacts {
 
   /// Rebuilds the lists if a vertex may move by more than the skin before the next update.
   void update(const DropletState& state, const Travel& travel);
-  /// Discards the lists. Call this when positions change without motion: after a shift of the frame's origin,
-  /// or a rescaling of the polygon.
+  /// Discards the lists. Call this when positions change without motion: when the frame's origin is shifted,
+  /// or the polygon is rescaled.
   void invalidate() { reference_.resize(0); }
   /// Whether the lists stay valid until the next update. Does not change them.
   /// @param moved  bound on the displacement of any vertex since rebuild() [sigma]

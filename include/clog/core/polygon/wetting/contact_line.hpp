@@ -49,7 +49,6 @@ struct VertexPlaces {
 /// Contact-angle hysteresis. The end of a wetted arc has the coordinate q along the wall, positive outwards:
 ///   q = u_m + sum share_e (u_e' - u_e).
 /// Here u is the coordinate of a vertex along the wall, and m a wetted vertex. The sum runs over the edges e
-/// Here u is the coordinate of a vertex along the wall, and m a wetted vertex. The sum runs over the edges e
 /// from m outwards; share_e is an edge's wetted fraction, u_e and u_e' are the coordinates of its two ends.
 /// Where the interface is smooth, the gradient of q is normal to the interface. So q does not change when
 /// vertices slide along the interface. A spring with the force f holds q:
