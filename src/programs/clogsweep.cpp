@@ -130,7 +130,7 @@ struct MasterState {
 };
 
 /// Exit code of prepare() if the sweep starts.
-constexpr int go_on = -1;
+constexpr int sweep_starts = -1;
 
 int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,
                        char** argv) {
@@ -138,7 +138,7 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   cli::CommandLine line("clogsweep", clogsweep_usage, cli::CommandLine::SweepKeys::accepted);
   std::optional<MasterState> master;
   std::string task;  // the text of an assignment, see scheduler::Assignment::text()
-  int exit_code = go_on;
+  int exit_code = sweep_starts;
   if (ranks.rank() == 0) {
     exit_code = cli::run_program("clogsweep", [&] {
       if (!parse_sweep_options(line, argc, argv)) return console::exit_success;
@@ -149,10 +149,10 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
       task = assignment(line, master->settings(line)).text();
       return console::exit_success;
     });
-    if (master && exit_code == console::exit_success) exit_code = go_on;
+    if (master && exit_code == console::exit_success) exit_code = sweep_starts;
   }
   exit_code = ranks.broadcast(exit_code);
-  if (exit_code != go_on) return exit_code;
+  if (exit_code != sweep_starts) return exit_code;
   task = ranks.broadcast(task);
 
   const auto assigned = scheduler::Assignment::from(task);

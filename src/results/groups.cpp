@@ -58,7 +58,7 @@ std::optional<Cause> cause_of(const sweep::RunRow& run) {
 }
 
 /// Whether the run may have recorded dwells of this length. A run that has not begun has no dwells.
-bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
+bool may_have_dwells(const sweep::RunRow& run, double dwell) {
   return dwell < run.parameters.max_time && run.steps > 0;
 }
 
@@ -67,7 +67,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const double observed = sweep::observed_distance(run).value();
   const Ending last = {observed, is_clogged, cause_of(run)};
-  if (!has_dwells_to_tell(run, dwell)) return last;
+  if (!may_have_dwells(run, dwell)) return last;
   // The mechanism of a droplet that moved on is unknown, so its long rest counts as a clog by `other`.
   const bool has_failed = run.status == RunStatus::failed;
   const Dwell* first = run.dwells.first_longer(dwell);
@@ -98,7 +98,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
   int num_unknown = 0;
   double known_from = 0;
   for (const sweep::RunRow& row : rows) {
-    if (!has_dwells_to_tell(row, dwell) || dwell >= row.dwells.known_from) continue;
+    if (!may_have_dwells(row, dwell) || dwell >= row.dwells.known_from) continue;
     if (!is_observed(row)) continue;  // the row is excluded
     num_unknown += !sweep::is_known(row.dwells.known_from);
     if (row.dwells.known_from > known_from) known_from = row.dwells.known_from;
@@ -240,7 +240,7 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   const std::optional<Ending> ending = ending_if_counted(run, from_release);
   group.num_interrupted += sweep::is_unfinished(run.status) && !from_release.is_clog;
   if (is_device(run.parameters)) {
-    const double begin = beginning_of_way(run.parameters.obstacles, run.release[0]);
+    const double begin = start_of_path(run.parameters.obstacles, run.release[0]);
     tally.arrivals.push_back(
         {begin, begin + from_release.distance, from_release.is_clog || from_release.cause.has_value()});
     if (is_displaced(run.parameters, run.release[0], run.release[1])) group.displaced.push_back(begin);

@@ -161,7 +161,7 @@ void SweepFiles::begin_publication() {
   if (!there.empty() && there != stamp_) rescue();
   const bool has_journal = journal_.is_there();
   if (!has_journal) {
-    if (!journal_.make_anew(place_)) rescue();
+    if (!journal_.recreate(place_)) rescue();
     journal_.rewrite(runs_.all());
   }
   journal_.begin();

@@ -42,9 +42,9 @@ enum Kind : std::int64_t {
 };
 
 /// Timeout for answers. A process answers at once, unless somebody has stopped it.
-constexpr std::chrono::milliseconds patience{2000};
+constexpr std::chrono::milliseconds answer_timeout{2000};
 /// Timeout for the start of a process. A start takes long if memory is scarce.
-constexpr std::chrono::milliseconds patience_for_start{20'000};
+constexpr std::chrono::milliseconds start_timeout{20'000};
 
 /// How a process ended.
 struct Ending {
@@ -160,7 +160,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
 class IsolatedJobs::Processes {
  public:
   Processes(Socket helper, pid_t helper_pid) : helper_(std::move(helper)), helper_pid_(helper_pid) {
-    helper_.limit_halts(patience);
+    helper_.limit_halts(answer_timeout);
   }
 
   void send_description(const std::string& description) {
@@ -190,7 +190,7 @@ class IsolatedJobs::Processes {
     process_.close();
     if (process_id_ > 0)
       kill(process_id_, SIGKILL);  // no other process gets this pid until the helper starts the next process
-    if (helper_.wait(patience))
+    if (helper_.wait(answer_timeout))
       if (const auto message = helper_.receive()) return from_bytes<Ending>(message->bytes).first;
     give_up_helper();
     return std::nullopt;
@@ -207,9 +207,9 @@ class IsolatedJobs::Processes {
   /// the end of this process.
   void start_process() {
     auto [mine, theirs] = Socket::pair();
-    mine.limit_halts(patience);
+    mine.limit_halts(answer_timeout);
     helper_.send_socket(theirs);
-    const auto began = helper_.wait(patience_for_start) ? helper_.receive() : std::nullopt;
+    const auto began = helper_.wait(start_timeout) ? helper_.receive() : std::nullopt;
     if (!began) return give_up_helper();
     process_id_ = from_bytes<pid_t>(began->bytes).first;
     process_ = std::move(mine);

@@ -65,7 +65,7 @@ std::optional<MachineTrust::Suspect> MachineTrust::failed(std::int64_t task, int
   return suspect(name);
 }
 
-void MachineTrust::let_go() {
+void MachineTrust::end_holds() {
   has_let_go_ = true;
   for (auto& [name, machine] : machines_)
     if (machine.in_service) machine.failures.clear();

@@ -99,7 +99,7 @@ class Master {
       const bool served = serve();
       const bool worked = work();
       answer_waiting();
-      if (!worked && nobody_can_work()) schedule_.trust.let_go();
+      if (!worked && nobody_can_work()) schedule_.trust.end_holds();
       if (Clock::now() - last_idle_ > std::chrono::milliseconds(100)) {
         last_idle_ = Clock::now();
         events_.idle();

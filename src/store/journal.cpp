@@ -198,7 +198,7 @@ void Journal::refuse_replaced() const {
               "when no other sweep is writing to it, the same command resumes the sweep");
 }
 
-bool Journal::make_anew(const OutputPath& table) {
+bool Journal::recreate(const OutputPath& table) {
   close();
   file_ = place_.create(table.exists() ? 0600 : 0666);
   if (!file_.is_open()) return false;

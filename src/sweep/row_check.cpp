@@ -116,7 +116,7 @@ std::string time_fault(const RunRow& row) {
 }
 
 std::string motion_fault(const RunRow& row) {
-  const double farthest = farthest_way(row);
+  const double farthest = farthest_distance(row);
   if (!is_number_below(std::hypot(row.distance, row.lateral), farthest))
     return fmt::format("{}, {}: no droplet gets farther than {} in {}", named("distance", row.distance),
                        named("lateral_displacement", row.lateral), shortest(farthest),
@@ -145,14 +145,14 @@ std::string steady_fault(const RunRow& row) {
   if (!(time > 0 && time <= longest + round_off * row.time))
     return named("steady_time", time) + " is not within the run";
   // When the steady speed began, the droplet may have been upstream or downstream of its release.
-  if (!is_number_below(distance, 2 * farthest_way(row)))
+  if (!is_number_below(distance, 2 * farthest_distance(row)))
     return named("steady_distance", distance) + " is not on the droplet's way";
   return "";
 }
 
 /// Checks that a dwell begins within the path and the time of the run.
 std::string dwell_begin_fault(const RunRow& row, const std::string& column, double distance, double begin) {
-  if (distance < 0 || distance > farthest_way(row))
+  if (distance < 0 || distance > farthest_distance(row))
     return named(column + "_at", distance) + " is not on the droplet's way";
   if (begin < 0 || begin > (1 + round_off) * row.time)
     return named(column + "_from", begin) + " is not within the run";
@@ -202,9 +202,9 @@ std::string dwells_fault(const RunRow& row) {
 std::string soundness_fault(const RunRow& row) {
   if (row.failed_by && (*row.failed_by != FailedBy::none) != (row.status == RunStatus::failed))
     return named("failed_by", name(*row.failed_by)) + ", but " + named("status", name(row.status));
-  if (is_known(row.sound_distance) && !is_number_below(row.sound_distance, farthest_way(row)))
+  if (is_known(row.sound_distance) && !is_number_below(row.sound_distance, farthest_distance(row)))
     return named("sound_distance", row.sound_distance) + " is not on the droplet's way";
-  if (row.status == RunStatus::failed && !is_number_below(*observed_distance(row), farthest_way(row)))
+  if (row.status == RunStatus::failed && !is_number_below(*observed_distance(row), farthest_distance(row)))
     return named("distance", row.distance) + " is not on the droplet's way";
   if (row.healed_crossings < RunRow::not_counted) return "a negative number of healed crossings";
   return "";
@@ -227,7 +227,7 @@ std::string contacts_fault(const RunRow& row) {
     return fmt::format("{}, but contacts={}", named("first_contact_at", row.contacts.first_distance),
                        contacts);
   if (is_known(row.contacts.first_distance) &&
-      !is_number_below(row.contacts.first_distance, farthest_way(row)))
+      !is_number_below(row.contacts.first_distance, farthest_distance(row)))
     return named("first_contact_at", row.contacts.first_distance) + " is not on the droplet's way";
   return "";
 }
@@ -272,7 +272,7 @@ std::string clog_fault(const RunRow& row) {
 std::string passage_fault(const RunRow& row) {
   const Finding finding = scene_of(row.parameters).finding;
   const double fastest = std::sqrt(diverged_energy_ratio);
-  const double way = std::abs(row.parameters.channel.start) + farthest_way(row);
+  const double way = std::abs(row.parameters.channel.start) + farthest_distance(row);
   struct Place {
     const char* column;
     double value;
@@ -288,8 +288,8 @@ std::string passage_fault(const RunRow& row) {
         Place{"largest_relative_speed_at", row.passage.largest_speed.place, passage, -way, way},
         Place{"smallest_relative_speed", row.passage.smallest_speed.value, passage, -fastest, fastest},
         Place{"smallest_relative_speed_at", row.passage.smallest_speed.place, passage, -way, way},
-        Place{"sag", row.sag.centre, Finding::sag, -units::droplet_diameter, farthest_way(row)},
-        Place{"top_sag", row.sag.top, Finding::sag, -units::droplet_diameter, farthest_way(row)}}) {
+        Place{"sag", row.sag.centre, Finding::sag, -units::droplet_diameter, farthest_distance(row)},
+        Place{"top_sag", row.sag.top, Finding::sag, -units::droplet_diameter, farthest_distance(row)}}) {
     if (!is_known(place.value)) continue;
     if (finding != place.finding)
       return named(place.column, place.value) + ", but there is no " +
@@ -318,7 +318,7 @@ std::string neck_fault(const RunRow& row) {
            ", but it has not broken";
   if (!(width > 0 && width < burst_perimeter) || least == 0)
     return named("thinnest_neck", width) + " is that of no droplet in which necks are looked for";
-  if (!is_number_below(row.neck.distance, farthest_way(row)))
+  if (!is_number_below(row.neck.distance, farthest_distance(row)))
     return named("thinnest_neck_at", row.neck.distance) + " is not on the droplet's way";
   return "";
 }
@@ -392,7 +392,7 @@ std::string result_fault(const RunRow& row) {
 
 }  // namespace
 
-double farthest_way(const RunRow& row) {
+double farthest_distance(const RunRow& row) {
   // The energy at the release excludes springs along the interface, because they have no energy. The margin
   // covers the work of these springs.
   constexpr double margin = 1.1;

@@ -200,7 +200,7 @@ Outcome sweep(const scheduler::Communicator& ranks, std::int64_t num_tasks, std:
   };
   events.tries_again = [&](const sweep::RunRow& failed) { return failed.attempt < most_attempts; };
   events.failure_withdrawn = [&](std::int64_t task, const std::string&) {
-    expect(outcome.status[task] == "failed", "a failure that is withdrawn was told of");
+    expect(outcome.status[task] == "failed", "a failure that is withdrawn was reported");
     --outcome.attempts[task];
   };
   events.set_aside = [&](const scheduler::MachineTrust::Suspect& machine) {

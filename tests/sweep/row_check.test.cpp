@@ -466,7 +466,7 @@ TEST(FarthestWay, IsHardlyMoreThanAFreeSoftDiskFalls) {
   RunRow row = describe(plan_of({{"model", "sp"}, {"wall-stiffness", "1"}}).task(0));
   row.parameters.obstacles.gap = std::nan("");
   row.time = 1000;
-  EXPECT_NEAR(farthest_way(row), 1.1 * row.parameters.drag.terminal_speed * row.time, 1e-12);
+  EXPECT_NEAR(farthest_distance(row), 1.1 * row.parameters.drag.terminal_speed * row.time, 1e-12);
 }
 
 }  // namespace

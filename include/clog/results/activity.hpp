@@ -28,14 +28,14 @@ class Activity {
   int num_ranks_;
   int num_busy_ = 0;
   int num_restarts_ = 0;
-  double stretch_ = 1;        // length of an interval [s]
+  double interval_ = 1;       // length of an interval [s]
   std::vector<double> busy_;  // busy time of all ranks in each interval [s]
   double last_ = 0;
   double last_start_ = 0;
   double busy_seconds_ = 0;
   double tail_busy_seconds_ = 0;  // since the last start
 
-  void go_on(double now);
+  void count_until(double now);
   void lengthen();
 };
 

@@ -38,7 +38,7 @@ class MachineTrust {
   std::optional<Suspect> failed(std::int64_t task, int rank, const std::string& message);
   /// Call this when no machine can decide whether a machine or a task is at fault. Machines on hold get tasks
   /// again.
-  void let_go();
+  void end_holds();
 
   int num_in_service() const { return num_in_service_; }
   bool may_work(int rank) const { return may_work(machines_.at(name_of(rank))); }

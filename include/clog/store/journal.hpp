@@ -59,7 +59,7 @@ class Journal {
   bool is_there() const { return place_.holds(file_); }
   /// Creates and locks an empty journal at the path of the removed journal. Returns false if another sweep
   /// has started there. @throws Error if it cannot be written
-  bool make_anew(const OutputPath& table);
+  bool recreate(const OutputPath& table);
 
   /// The records that the file had when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }

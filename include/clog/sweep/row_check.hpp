@@ -17,6 +17,6 @@ std::string fault_of(const RunRow& row);
 /// b_inf = M g/V_t. Only gravity and the energy U at the release supply energy, so b_inf (integral of v^2) <=
 /// M g x + U. A path of length r in the time t has (integral of v^2) >= r^2/t, and x <= r. Therefore r <= V_t
 /// t + U/(M g).
-double farthest_way(const RunRow& row);
+double farthest_distance(const RunRow& row);
 
 }  // namespace clog::sweep

@@ -103,10 +103,10 @@ PotentialEnergy SpForces::energy(const DropletState& state) const {
 SpDroplet::SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
     : run_(run), forces_(run, obstacles) {
   state_ = std::move(initial);
-  SpDroplet::start_afresh();
+  SpDroplet::rebuild_lists();
 }
 
-void SpDroplet::start_afresh() {
+void SpDroplet::rebuild_lists() {
   forces_.forget_contacts();
   forces_.update_contacts(state_, state_.possible_travel(run_.time_step.value()));
   force_ = forces_.force_at(state_.position.head<2>(), state_.frame);

@@ -113,7 +113,7 @@ class Stiffness {
   /// as far as least_part allows. A contact changes K by rank one, too, so a few corrections are enough. C.
   /// G. Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein, Math. Comp. 30, 523 (1976).
   /// @param found  the displacement that solve() gives for this change of force before the correction
-  void learn(const VectorXd& step, const VectorXd& found) {
+  void add_correction(const VectorXd& step, const VectorXd& found) {
     const double part_kept = step.dot(found) / step.squaredNorm();
     const double share = part_kept < least_part ? (1 - least_part) / (1 - part_kept) : 1;
     const VectorXd excess = share * (found - step);
@@ -271,14 +271,14 @@ class Search {
     const VectorXd step = part * move_;
     const ArrayXd place = position_ + (axes_.directions * step).array();
     VectorXd force_there = field_.force_at(place, axes_);
-    VectorXd way_left = stiffness_.solve(force_there);
-    if (!way_left.allFinite()) return false;
-    const bool succeeds = way_left.norm() < share * move_.norm();
-    if (!halves_) stiffness_.learn(step, move_ - way_left);
+    VectorXd remaining_move = stiffness_.solve(force_there);
+    if (!remaining_move.allFinite()) return false;
+    const bool succeeds = remaining_move.norm() < share * move_.norm();
+    if (!halves_) stiffness_.add_correction(step, move_ - remaining_move);
     if (succeeds) {
       position_ = place;
       force_ = std::move(force_there);
-      move_ = std::move(way_left);
+      move_ = std::move(remaining_move);
     }
     if (!halves_) stiffness_.correct(move_);
     return succeeds;

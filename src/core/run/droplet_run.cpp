@@ -57,7 +57,7 @@ bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
 }
 
 /// Twice the distance that a droplet falls without obstacles [sigma].
-double farthest_way(const RunParameters& run) { return 2 * run.drag.terminal_speed * run.max_time; }
+double farthest_distance(const RunParameters& run) { return 2 * run.drag.terminal_speed * run.max_time; }
 
 /// Checks the state in a snapshot before anything is computed with it.
 void check_state(const DropletState& state, const RunParameters& run, const ObstacleArray& obstacles) {
@@ -65,8 +65,8 @@ void check_state(const DropletState& state, const RunParameters& run, const Obst
   if (state.size() != model_of(run).num_points(run) || state.velocity.size() != state.position.size() ||
       state.frame.period[0] != period.along() || state.frame.period[1] != period.across())
     throw Error("the snapshot is of another run");
-  const bool is_placed =
-      (state.position.abs() < burst_perimeter).all() && is_in_range(state.frame, period, farthest_way(run));
+  const bool is_placed = (state.position.abs() < burst_perimeter).all() &&
+                         is_in_range(state.frame, period, farthest_distance(run));
   const double fastest = std::sqrt(diverged_energy_ratio * static_cast<double>(state.size()));
   const bool is_moving = (state.velocity.abs() < fastest * run.drag.terminal_speed).all();
   const auto num_wedges = static_cast<Eigen::Index>(obstacles.wedges().size());
@@ -90,17 +90,17 @@ DropletRun::DropletRun(const RunParameters& run)
 
 DropletRun::DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles)
     : DropletRun(run, obstacles, scene_of(run).release(run, *obstacles)) {
-  end_ = scene_of(run).way(run, start_frame_.global(start_));
+  end_ = scene_of(run).passing_distance(run, start_frame_.global(start_));
 }
 
 DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles,
-                       DropletState initial, double way)
+                       DropletState initial, double passing_distance)
     : run_(std::move(run)),
       obstacles_(std::move(obstacles)),
       droplet_(model_of(run_).make(run_, *obstacles_, std::move(initial))),
       start_frame_(droplet_->state().frame),
       start_(droplet_->centre()),
-      end_(way),
+      end_(passing_distance),
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
       first_quiet_time_(relaxation_times_before_a_clog * relaxation_time(run_)),
       next_search_(first_search(run_)),
@@ -128,13 +128,13 @@ bool DropletRun::advance(int num_checks) {
     steps_done_ += steps;
     check();
     if (status_ == RunStatus::running && steps_done_ % steps_per_snapshot == 0)
-      start_afresh_and_take_snapshot();
+      rebuild_lists_and_take_snapshot();
   }
   return status_ != RunStatus::running;
 }
 
-void DropletRun::start_afresh_and_take_snapshot() {
-  droplet_->start_afresh();
+void DropletRun::rebuild_lists_and_take_snapshot() {
+  droplet_->rebuild_lists();
   ByteWriter bytes;
   save(bytes);
   snapshot_ = bytes.take();
@@ -174,7 +174,7 @@ DropletRun DropletRun::restore(const RunParameters& run, std::shared_ptr<const O
     restored.droplet_->restore(rest);
     restored.start_frame_.restore(rest);
     rest.get(restored.start_);
-    restored.end_ = scene_of(run).way(run, restored.start_frame_.global(restored.start_));
+    restored.end_ = scene_of(run).passing_distance(run, restored.start_frame_.global(restored.start_));
     rest.get(restored.steps_done_);
     rest.get(restored.quiet_checks_);
     rest.get(restored.balanced_at_);
@@ -221,8 +221,8 @@ DropletRun DropletRun::broken(const RunParameters& run, std::shared_ptr<const Ob
 /// Checks the contents of a snapshot except the droplet itself.
 bool DropletRun::is_in_range() const {
   return (start_.abs() < burst_perimeter).all() &&
-         clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
-         std::abs(sound_distance_) <= farthest_way(run_) + obstacles_->period().along() &&
+         clog::is_in_range(start_frame_, obstacles_->period(), farthest_distance(run_)) && steps_done_ > 0 &&
+         std::abs(sound_distance_) <= farthest_distance(run_) + obstacles_->period().along() &&
          steps_done_ <= max_steps_ && quiet_checks_ >= 0 && quiet_checks_ <= steps_done_ / steps_per_check &&
          !(balanced_at_ < 0 || balanced_at_ >= run_.clog_energy) && next_search_ > 0 &&
          std::isfinite(next_search_) && kinetic_energy_ratio() < diverged_energy_ratio;

@@ -233,7 +233,8 @@ void FamilyRun::cut_present() {
     birth.state.frame = scaled(state.frame, growth, period);
     while (birth.state.recentre().any()) {
     }
-    birth.way = (ancestor_.way() - birth.member.birth.distance) / birth.member.diameter;
+    birth.passing_distance =
+        (ancestor_.passing_distance() - birth.member.birth.distance) / birth.member.diameter;
   }
   std::ranges::move(births, std::back_inserter(births_));
 }
@@ -283,7 +284,7 @@ void FamilyRun::begin(const Birth& birth, std::span<const std::byte> snapshot) {
   daughter_ = snapshot.empty()
                   ? std::make_unique<DropletRun>(run, std::move(obstacles), birth.state)
                   : std::make_unique<DropletRun>(DropletRun::resume(run, std::move(obstacles), snapshot));
-  daughter_->set_way(birth.way);
+  daughter_->set_passing_distance(birth.passing_distance);
 }
 
 std::vector<std::byte> FamilyRun::snapshot() const {

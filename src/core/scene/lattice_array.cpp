@@ -82,6 +82,6 @@ const Scene lattice_scene = {.finding = Finding::clogging_length,
                              .density = lattice_density,
                              .walls = lattice_walls,
                              .release = release_in_lattice,
-                             .way = endless_way};
+                             .passing_distance = infinite_passing_distance};
 
 }  // namespace clog

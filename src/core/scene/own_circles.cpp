@@ -306,9 +306,9 @@ Eigen::Array2d place_in_file(const RunParameters& run, const Eigen::Array2d& pla
   return in_file;
 }
 
-double way_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
+double distance_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
   if (run.obstacles.exit == 0) return std::numeric_limits<double>::infinity();
-  return run.obstacles.exit - beginning_of_way(run.obstacles, place_in_file(run, start)[0]);
+  return run.obstacles.exit - start_of_path(run.obstacles, place_in_file(run, start)[0]);
 }
 
 /// The density. It is computed from the posts if the parameters lack it, as those of a stored row do.
@@ -318,7 +318,7 @@ double circle_density(const ObstacleParameters& obstacles) {
 
 }  // namespace
 
-double beginning_of_way(const ObstacleParameters& obstacles, double x) {
+double start_of_path(const ObstacleParameters& obstacles, double x) {
   if (obstacles.release != Release::entrance) return x;
   return obstacles.entrance + std::remainder(x - obstacles.entrance, obstacles.period().along());
 }
@@ -328,7 +328,7 @@ bool is_displaced(const RunParameters& run, double x, double y) {
     return false;
   constexpr double tolerated = 0.01;  // of the release without obstacles nearby [sigma]
   const Eigen::Array2d drawn = place_on_entrance(run);
-  const double along = beginning_of_way(run.obstacles, x) - drawn[0];
+  const double along = start_of_path(run.obstacles, x) - drawn[0];
   const double across = std::remainder(y - drawn[1], run.obstacles.period().across());
   return std::hypot(along, across) > tolerated;
 }
@@ -343,7 +343,7 @@ const Scene own_circles_scene = {.finding = Finding::clogging_length,
                                  .density = circle_density,
                                  .walls = shifted_device,
                                  .release = release_in_device,
-                                 .way = way_to_exit,
+                                 .passing_distance = distance_to_exit,
                                  .place_in_file = place_in_file};
 
 }  // namespace clog

@@ -52,6 +52,6 @@ const Scene random_array_scene = {.finding = Finding::clogging_length,
                                   .density = random_density,
                                   .walls = sample,
                                   .release = release_in_void,
-                                  .way = endless_way};
+                                  .passing_distance = infinite_passing_distance};
 
 }  // namespace clog

@@ -39,6 +39,6 @@ const Scene wall_scene = {.finding = Finding::sag,
                           .density = no_density,
                           .walls = flat_wall,
                           .release = touching,
-                          .way = endless_way};
+                          .passing_distance = infinite_passing_distance};
 
 }  // namespace clog

@@ -146,7 +146,7 @@ TEST(OwnCircles, AreEnteredOnALineAndLeftAtTheExit) {
     EXPECT_NEAR(in_file[0], 2, 1e-9) << "free, so just there";
     EXPECT_GE(in_file[1], 3 - 1e-9);
     EXPECT_LE(in_file[1], 4 + 1e-9);
-    EXPECT_NEAR(scene.way(run, place), 18, 1e-9);
+    EXPECT_NEAR(scene.passing_distance(run, place), 18, 1e-9);
   }
 }
 
@@ -298,7 +298,7 @@ TEST(OwnCircles, LetDropletsStartWithinTheBoxWhereverTheyAre) {
         if ((place < 0).any() || place[0] >= obstacles.length || place[1] >= obstacles.box)
           ++num_across_the_border;
         if (obstacles.exit == 0) continue;
-        const double way = scene.way(run, place);
+        const double way = scene.passing_distance(run, place);
         ASSERT_NEAR(std::remainder(in_file[0] + way - obstacles.exit, obstacles.length), 0, 1e-9);
         ASSERT_LE(std::abs(obstacles.exit - way - obstacles.entrance), obstacles.length / 2 + 1e-9);
       }

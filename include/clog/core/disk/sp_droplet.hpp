@@ -50,7 +50,7 @@ class SpDroplet final : public Droplet {
   SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);
 
   void advance(int num_steps) override;
-  void start_afresh() override;
+  void rebuild_lists() override;
   double kinetic_energy() const override;
   PotentialEnergy potential_energy() const override { return forces_.energy(state_); }
   PolygonShape shape() const override;

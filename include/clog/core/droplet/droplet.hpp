@@ -21,7 +21,7 @@ class Droplet {
 
   /// Rebuilds everything that save() does not write: contact lists and sums over them. After this call, a
   /// droplet restored from save() moves exactly like this one.
-  virtual void start_afresh() = 0;
+  virtual void rebuild_lists() = 0;
   void save(ByteWriter& bytes) const;
   /// Restores what save() wrote for a droplet with the same parameters and obstacles.
   void restore(ByteReader& bytes);

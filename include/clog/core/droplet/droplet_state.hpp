@@ -58,7 +58,9 @@ struct Travel {
 };
 /// Upper bound on the distance that a point with this initial speed covers in a time [t0]. The bound is at
 /// least twice the distance of a free fall.
-inline double possible_way(double speed, double time) { return 2 * time * (speed + units::gravity * time); }
+inline double possible_distance(double speed, double time) {
+  return 2 * time * (speed + units::gravity * time);
+}
 /// Largest displacement that contact lists can allow for [sigma]. A droplet that moves farther between two
 /// updates has diverged.
 inline constexpr double widest_skin = 4;
@@ -89,13 +91,13 @@ struct DropletState {
     return {velocity.head(size()).mean(), velocity.tail(size()).mean()};
   }
 
-  /// See possible_way().
+  /// See possible_distance().
   Travel possible_travel(double time) const {
     const Eigen::Array2d drift = mean_velocity();
     const auto vx = velocity.head(size());
     const auto vy = velocity.tail(size());
-    return {.absolute = possible_way(std::sqrt((vx.square() + vy.square()).maxCoeff()), time),
-            .relative = possible_way(
+    return {.absolute = possible_distance(std::sqrt((vx.square() + vy.square()).maxCoeff()), time),
+            .relative = possible_distance(
                 std::sqrt(((vx - drift[0]).square() + (vy - drift[1]).square()).maxCoeff()), time)};
   }
 

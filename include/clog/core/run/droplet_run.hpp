@@ -126,9 +126,9 @@ class DropletRun {
   /// Releases the droplet as its scene defines, but among the given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
   /// @param initial  the droplet at its release
-  /// @param way  displacement along the flow after which the droplet has `passed` [sigma]
+  /// @param passing_distance  displacement along the flow after which the droplet has `passed` [sigma]
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
-             double way = std::numeric_limits<double>::infinity());
+             double passing_distance = std::numeric_limits<double>::infinity());
 
   /// A run restored from a snapshot() continues bit for bit like the original. This works because the
   /// original run, too, rebuilds its contact lists when it takes the snapshot.
@@ -152,9 +152,9 @@ class DropletRun {
   RunResult result() const;
   double time() const { return static_cast<double>(steps_done_) * run_.time_step.value(); }
   /// Displacement along the flow after which the droplet has `passed` [sigma].
-  double way() const { return end_; }
-  /// Sets way(), see the constructor.
-  void set_way(double way) { end_ = way; }
+  double passing_distance() const { return end_; }
+  /// Sets passing_distance(), see the constructor.
+  void set_passing_distance(double distance) { end_ = distance; }
   /// Displacement along and across the flow since release [sigma].
   Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
   /// Displacement of a point, given in the droplet's frame, from the place of release [sigma].
@@ -209,7 +209,7 @@ class DropletRun {
   void check();
   SteadyTravel steady(const Dwells& dwells) const;
   Sag sag(const Droplet& droplet) const;
-  void start_afresh_and_take_snapshot();
+  void rebuild_lists_and_take_snapshot();
   bool has_broken();
   bool has_crossed_itself() const;
   Eigen::Array2d last_displacement() const;

@@ -108,7 +108,7 @@ class FamilyRun {
     Member member;
     DropletState state;  ///< in the daughter's units
     int num_vertices = 0;
-    double way = std::numeric_limits<double>::infinity();  ///< [sigma of the daughter]
+    double passing_distance = std::numeric_limits<double>::infinity();  ///< [sigma of the daughter]
 
     void save(ByteWriter& bytes) const;
     void restore(ByteReader& bytes);

@@ -47,7 +47,7 @@ struct Scene {
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
   /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has.
   /// @param start  place of release of the centre of mass, in the coordinates of the walls [sigma]
-  double (*way)(const RunParameters& run, const Eigen::Array2d& start);
+  double (*passing_distance)(const RunParameters& run, const Eigen::Array2d& start);
   /// Converts a place from the coordinates of the walls to those of the file of circles, in the first period
   /// [sigma]; nullptr without a file.
   Eigen::Array2d (*place_in_file)(const RunParameters& run, const Eigen::Array2d& place) = nullptr;
@@ -56,7 +56,7 @@ struct Scene {
 /// The x at which the path of a droplet begins that was released at `x`, in the coordinates of the file of
 /// circles [sigma]. The void nearest to an entrance may be across the border of the array. In this case the
 /// result is the x of the droplet's periodic image that is nearest to the entrance.
-double beginning_of_way(const ObstacleParameters& obstacles, double x);
+double start_of_path(const ObstacleParameters& obstacles, double x);
 
 /// Whether a droplet was released in the nearest void, because an obstacle was at its place on the entrance.
 /// @param x, y  place of the release, in the coordinates of the file of circles [sigma]

@@ -57,7 +57,7 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, D
       friction_{.touches = WallTouches(run, obstacles), .force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)} {
 }
 
-void DpStepper::start_afresh(const DropletState& state) {
+void DpStepper::rebuild_lists(const DropletState& state) {
   forces_->forget_all_contacts();
   forces_->update_contacts(state, state.possible_travel(steps_per_survey_ * run_.time_step.value()));
 }
@@ -126,8 +126,8 @@ kernel::Survey DpStepper::survey() const {
 void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now, double time,
                                  Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
-  const Travel travel{.absolute = possible_way(now.speed, time),
-                      .relative = possible_way(now.relative_speed, time)};
+  const Travel travel{.absolute = possible_distance(now.speed, time),
+                      .relative = possible_distance(now.relative_speed, time)};
   if (!forces_->contacts_hold(now.moved, now.moved_relative, travel)) {
     memory_.store(a.position, state.position);
     memory_.store(a.velocity, state.velocity);
@@ -142,8 +142,8 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   const double unforeseen =
       0.1 * forces_->vertex_diameter() +
       thrown * near_.contacts.measure(kernel_, contact_as_kick(run_, *forces_, 0), *forces_, a);
-  near_.wall_way = refined_sway * (travel.absolute + unforeseen);
-  near_.self_way = 2 * (travel.relative + unforeseen);
+  near_.largest_wall_gap = refined_sway * (travel.absolute + unforeseen);
+  near_.largest_self_gap = 2 * (travel.relative + unforeseen);
   crossings_.rebuild(contour(), state.crossings);
   keep_near_contacts();
   if (holds_circles_) {
@@ -155,7 +155,7 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
 }
 
 void DpStepper::keep_near_contacts() {
-  near_.contacts.keep(kernel_, *forces_, near_.wall_way, near_.self_way);
+  near_.contacts.keep(kernel_, *forces_, near_.largest_wall_gap, near_.largest_self_gap);
   near_.contacts.mute(crossings_.muted(), n_);
 }
 
@@ -291,7 +291,7 @@ void DpStepper::update_rates(const kernel::KickCoefficients& coefficients) {
     return;
   }
   const double way = rates_.fastest * 2 * coefficients.half_step;  // distance of the fastest vertex in a step
-  const double steps = 1 + farthest_way_per_rate * run_.drag.near_wall_cutoff / way;
+  const double steps = 1 + farthest_move_per_rate * run_.drag.near_wall_cutoff / way;
   rates_.steps_left = static_cast<int>(std::min(most_steps_per_rate, steps)) - 1;
   rates_.h1 = coefficients.h1;
   rates_.h2 = coefficients.h2;

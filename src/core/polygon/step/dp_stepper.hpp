@@ -22,7 +22,7 @@ inline constexpr int most_steps_per_survey = 32;
 /// The rates of the near-wall drag are kept for at most this number of steps. In these steps, no vertex may
 /// move farther than this fraction of the near-wall cutoff
 /// (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
-inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
+inline constexpr double most_steps_per_rate = 4, farthest_move_per_rate = 0.2;
 
 /// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the motion that follows
 /// depends only on the DropletState.
@@ -34,7 +34,7 @@ class DpStepper {
   DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces);
 
   /// Rebuilds the contact lists of a droplet.
-  void start_afresh(const DropletState& state);
+  void rebuild_lists(const DropletState& state);
   /// Moves a droplet by `num_steps` time steps of the run. If these steps would be unstable, it takes more
   /// and shorter steps. It stops if the droplet bursts. Returns the number of steps taken.
   /// @param work  if not null, the work of drag and springs is added to it
@@ -48,7 +48,8 @@ class DpStepper {
   /// Possible contacts of the droplet before the next survey.
   struct Near {
     NearContacts contacts{};
-    double wall_way = 0, self_way = 0;         // distances from contact up to which `contacts` has entries
+    double largest_wall_gap = 0,
+           largest_self_gap = 0;               // distances from contact up to which `contacts` has entries
     WallPlan plan;                             // used if holds_circles_ is false
     WallHold hold;                             // used if holds_circles_ is true
     std::vector<kernel::WedgePlace> wedges{};  // wedges in the droplet's frame

@@ -55,7 +55,7 @@ TEST(SelfCrossings, AreSavedAndRestored) {
     droplet.advance(1);
     ASSERT_LT(droplet.num_integrated_steps(), 400);
   }
-  droplet.start_afresh();
+  droplet.rebuild_lists();
   ByteWriter bytes;
   droplet.save(bytes);
   const std::vector<std::byte> saved = bytes.take();

@@ -410,7 +410,7 @@ TEST(WallAnchors, AreSavedAndRestored) {
   const ObstacleArray wall(20, {{0.66, 0.1, 0.15}});
   DpDroplet droplet(run, wall, state_of(regular_polygon(64, units::rest_area)));
   droplet.advance(640);
-  droplet.start_afresh();
+  droplet.rebuild_lists();
   ASSERT_GT(droplet.potential_energy().anchors, 0);
   ByteWriter bytes;
   droplet.save(bytes);

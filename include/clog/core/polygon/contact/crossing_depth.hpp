@@ -42,7 +42,7 @@ class CrossingDepth {
   int vertex() const { return vertex_; }
   double size() const { return is_limited() ? slip_.distance : distance_; }
   /// Moves the vertex towards the edge by the depth.
-  Eigen::Array2d shift() const { return is_limited() ? slip_.distance * to_edge() : way_to_edge_; }
+  Eigen::Array2d shift() const { return is_limited() ? slip_.distance * to_edge() : vector_to_edge_; }
 
   /// Adds `factor` times the gradient of size().
   void add_gradient(double factor, std::vector<VertexPush>& to) const;
@@ -59,15 +59,17 @@ class CrossingDepth {
   };
   int vertex_, begin_, end_;
   double length_, fraction_, distance_;
-  Eigen::Array2d tangent_, way_to_edge_;
+  Eigen::Array2d tangent_, vector_to_edge_;
   bool is_beside_;  // whether the nearest point of the edge is not one of its ends
   Slip slip_;
 
   bool is_limited() const { return slip_.distance < distance_; }
-  Eigen::Array2d to_edge() const { return distance_ > 0 ? way_to_edge_ / distance_ : Eigen::Array2d(0, 0); }
+  Eigen::Array2d to_edge() const {
+    return distance_ > 0 ? vector_to_edge_ / distance_ : Eigen::Array2d(0, 0);
+  }
   void limit_by(const Contour& contour, int end, const std::array<CrossingPlace::OwnEdge, 2>& own);
   void add_gradient_of_slip(double factor, std::vector<VertexPush>& to) const;
-  void add_gradient_of_way(const Eigen::Array2d& factor, std::vector<VertexPush>& to) const;
+  void add_gradient_of_vector_to_edge(const Eigen::Array2d& factor, std::vector<VertexPush>& to) const;
 };
 
 }  // namespace clog

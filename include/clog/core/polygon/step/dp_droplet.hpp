@@ -24,7 +24,7 @@ class DpDroplet final : public Droplet {
   ~DpDroplet() override;
 
   void advance(int num_steps) override;
-  void start_afresh() override;
+  void rebuild_lists() override;
   double kinetic_energy() const override;
   Eigen::Array2d centre() const override;
   Eigen::Array2d area_centre() const override { return area_centroid(state_.position); }
