@@ -109,15 +109,15 @@ def main():
         sources = chosen(sources, given.most)
 
     ask = {"warnings": compiler_words, "tidy": tidy_words}[given.kind]
-    told, faulty = set(), []
+    printed, faulty = set(), []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for source, code, words in pool.map(lambda name: ask(name, commands[name]), sources):
             if code != 0:
                 faulty.append(source)
             # A finding in a header is printed once, not for every source that includes the header.
             for finding in FINDING.split(words):
-                if finding.strip() and finding not in told:
-                    told.add(finding)
+                if finding.strip() and finding not in printed:
+                    printed.add(finding)
                     print(finding.rstrip(), flush=True)
     if faulty:
         sys.exit(f"there is something to mend in {len(faulty)} of {len(sources)} sources: " + " ".join(faulty))

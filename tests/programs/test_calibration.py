@@ -166,8 +166,8 @@ class Calibrations(unittest.TestCase):
 
     def test_the_end_of_the_range_is_reported(self):
         for tension, near_wall_drag, is_at_bound in ((100, 0.1, True), (1, 5, True), (1, 0, False)):
-            told = " ".join(search.calibrate(measured(model(tension, near_wall_drag)), model).warnings)
-            self.assertEqual("the best is at the end of what was searched" in told, is_at_bound, told)
+            printed = " ".join(search.calibrate(measured(model(tension, near_wall_drag)), model).warnings)
+            self.assertEqual("the best is at the end of what was searched" in printed, is_at_bound, printed)
 
     def test_frames_that_no_simulation_reaches_are_counted(self):
         seen = measured(model(1, 0.1))
@@ -176,10 +176,10 @@ class Calibrations(unittest.TestCase):
         self.assertAlmostEqual(int(number), len(seen.h) / 2, delta=1)
 
     def test_every_simulation_is_reported_and_a_search_is_repeatable(self):
-        told = []
-        found = search.calibrate(measured(model(1, 0.1), 0.02), model, lambda *attempt: told.append(attempt))
-        self.assertGreaterEqual(len(told), found.simulations)  # Two threads may have tried the same value.
-        self.assertAlmostEqual(min(delta for _, _, delta in told), found.delta_v, places=12)
+        printed = []
+        found = search.calibrate(measured(model(1, 0.1), 0.02), model, lambda *attempt: printed.append(attempt))
+        self.assertGreaterEqual(len(printed), found.simulations)  # Two threads may have tried the same value.
+        self.assertAlmostEqual(min(delta for _, _, delta in printed), found.delta_v, places=12)
         self.assertEqual(search.calibrate(measured(model(1, 0.1), 0.02), model)[:4], found[:4])
 
     def test_what_a_simulation_throws_ends_the_search(self):

@@ -138,22 +138,22 @@ class GivenKeys(ProgramTest):
         for name, tension, stiffness in (("a.h5", 1, 0.5), ("b.h5", 2, 0.7)):
             self.succeed("clogsweep", *self.SETTINGS, f"line-tension={tension}", f"wall-stiffness={stiffness}",
                          "--output", name)
-        told = self.succeed("clogfit", "a.h5", "b.h5").stdout
-        self.assertIn("wall_stiffness", told)
-        self.assertNotIn("vertices", told)
+        printed = self.succeed("clogfit", "a.h5", "b.h5").stdout
+        self.assertIn("wall_stiffness", printed)
+        self.assertNotIn("vertices", printed)
 
     def test_one_given_value_among_automatic_ones_is_a_column(self):
         _, lines = self.table_of("line-tension,vertices\n1,32\n2,\n")
         self.assertEqual([line["vertices"] for line in lines], ["32", "128*"])
         self.assertIn("\n*: the automatic value", self.succeed("clogfit", "s.h5").stdout)
 
-    def test_values_that_follow_from_given_ones_are_not_told(self):
+    def test_values_that_follow_from_given_ones_are_not_printed(self):
         for given in (["wall-stiffness=1"], ["time-step=0.001"], ["time-step=0.0005", "wall-stiffness=0.5"]):
             shared, _ = self.table_of("line-tension\n1\n", *given)
-            told = {word.split("=")[0] for word in shared.split()} & {"time_step", "wall_stiffness", "vertices"}
-            self.assertEqual(told, {word.split("=")[0].replace("-", "_") for word in given})
+            printed = {word.split("=")[0] for word in shared.split()} & {"time_step", "wall_stiffness", "vertices"}
+            self.assertEqual(printed, {word.split("=")[0].replace("-", "_") for word in given})
 
-    def test_a_given_ratio_of_stiffness_and_tension_is_told(self):
+    def test_a_given_ratio_of_stiffness_and_tension_is_printed(self):
         _, lines = self.table_of("line-tension\n1\n2\n", "perimeter-spring=rest", "perimeter-stiffness-ratio=3")
         self.assertEqual([float(line["perimeter_stiffness"]) for line in lines], [3, 6])
 
@@ -254,9 +254,9 @@ class Fit(ProgramTest):
         self.assertEqual(len(self.fit()["groups"]), 2)
         group, = self.fit("--pool=max-time")["groups"]
         self.assertEqual((group["runs"], group["repeated"], group["total_distance"]), (4, 4, long[0]["total_distance"]))
-        told = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
-        self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", told)
-        self.assertIn("groups that differ only in max-time are joined (--pool)\n", told)
+        printed = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
+        self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", printed)
+        self.assertIn("groups that differ only in max-time are joined (--pool)\n", printed)
         # With another number of boxes the same seed gives another array. So these runs do not repeat droplets, and all
         # of them count.
         self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
@@ -517,7 +517,7 @@ class Fit(ProgramTest):
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
         self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
 
-    def test_a_list_of_vertices_is_told_though_they_may_be_automatic(self):
+    def test_a_list_of_vertices_is_printed_though_they_may_be_automatic(self):
         self.succeed("clogsweep", "seeds=1..2", "vertices=64,96", "box=20", *FAR, "--output", "sweep.h5")
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"\nobstacle_gap +line_tension +vertices +runs")
 

@@ -80,8 +80,8 @@ class Families(SweepTest, Analysis):
         self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", 0).stdout)
         member = self.deepest()
         self.assertGreater(len(member.path), 1)
-        told = self.succeed("clogsweep", "replay", "s.h5", member.task, "--droplet", member.path).stdout
-        self.assertIn("the same bits", told)
+        printed = self.succeed("clogsweep", "replay", "s.h5", member.task, "--droplet", member.path).stdout
+        self.assertIn("the same bits", printed)
         paths = ", ".join(path for path in self.droplets[self.droplets.task == 0].path if path)
         for program, more in (("clogsweep", []), ("clogrun", ["--output", "r.h5"])):
             self.refuse(program, "replay", "s.h5", 0, "--droplet", "0000000", *more, words=[f"task 0 are {paths})"])

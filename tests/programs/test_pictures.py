@@ -220,7 +220,7 @@ class Looks(Analysis):
         self.refuse_analysis("dwell", "s.h5", "--programs", BIN,
                              words=["did not look for them", "compute the sweep anew"])
 
-    def test_many_curves_are_told_apart_beside_the_legend_and_off_the_frame(self):
+    def test_many_curves_are_distinguished_beside_the_legend_and_off_the_frame(self):
         arrays = ["obstacle-gap=lin(0.2,0.35,4)", "obstacle-diameter=lin(0.3,0.45,4)"]
         for tensions in ("line-tension=6,8", "line-tension=3,3.3,9"):
             groups = self.fit(*QUICK, tensions, *arrays, "seeds=1")

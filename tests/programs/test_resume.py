@@ -240,8 +240,8 @@ class Resumed(SweepTest):
     def test_runs_that_only_the_journal_of_a_dead_sweep_has_are_counted(self):
         self.until_in_time(self.killed_behind_its_table)
         for command in (("clogsweep", "status", "s.h5"), ("clogfit", "s.h5")):
-            told = self.run_program(*command).stderr
-            self.assertRegex(told, r"s.h5: \d+ runs? ended that only the journal of the stopped sweep has; "
+            printed = self.run_program(*command).stderr
+            self.assertRegex(printed, r"s.h5: \d+ runs? ended that only the journal of the stopped sweep has; "
                                    r"the sweep's own command adds (it|them)\n")
         self.succeed("clogsweep", *SEVERAL_SLOW, ranks=2)
         self.assertNotIn("journal", self.run_program("clogsweep", "status", "s.h5").stderr)

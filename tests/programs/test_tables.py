@@ -22,8 +22,8 @@ SEPARATORS = [",", ";", "\t", " "]
 OWN = ["box=10", "vertices=64", "max-time=60", "--dry-run"]
 
 
-def without_costs(told):
-    return [line for line in told.splitlines() if "core-hours" not in line]
+def without_costs(printed):
+    return [line for line in printed.splitlines() if "core-hours" not in line]
 
 
 class Tables(Analysis):
@@ -157,10 +157,10 @@ class Tables(Analysis):
                 self.table(separator, [head, *lines])
                 expected = self.call(command)
                 self.table(separator, [*([comment] for comment in comments), head, lines[0], *([comment] for comment in comments), *lines[1:]])
-                told = self.call(command)
+                printed = self.call(command)
                 with self.subTest(reader=name, separator=separator):
-                    self.assertEqual((told.returncode, without_costs(told.stdout)),
-                                     (expected.returncode, without_costs(expected.stdout)), told.stderr)
+                    self.assertEqual((printed.returncode, without_costs(printed.stdout)),
+                                     (expected.returncode, without_costs(expected.stdout)), printed.stderr)
 
 
 class Units(ProgramTest):
@@ -222,13 +222,13 @@ class Points(ProgramTest):
 
     def test_decimal_commas_with_units_are_those_of_decimal_points(self):
         self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n")
-        told = {}
+        printed = {}
         for name, text in (("point", "obstacle-diameter;seeds\n0.4mm;1\n0.8 mm;2\n1.5e3um;3\n"),
                            ("comma", "obstacle-diameter;seeds\n0,4mm;1\n0,8 mm;2\n1,5e3um;3\n")):
             self.write("p.csv", text)
-            told[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
+            printed[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
                                       "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
-        self.assertEqual(told["comma"], told["point"])
+        self.assertEqual(printed["comma"], printed["point"])
         self.refuse("clogsweep", "box=20", "obstacle-gap=0.4", "--lab", "lab.cfg", "--points",
                     self.write("p.csv", "obstacle-diameter;seeds\n1,350mm;1\n"), "--dry-run",
                     words=["'1,350'", "thousands"])

@@ -35,8 +35,8 @@ def curves_of(answer: dict[str, Any], abscissa: str) -> list[tuple[str, list[Com
     curves: dict[tuple[Any, ...], list[Comparison]] = {}
     for one in answer["comparisons"]:
         curves.setdefault((one["here"], *(one[name] for name in others)), []).append(one)
-    told_apart = {key[0] for key in curves}
-    labels = [", ".join([*([side(answer, key[0])] if len(told_apart) > 1 or not others else []),
+    distinguished = {key[0] for key in curves}
+    labels = [", ".join([*([side(answer, key[0])] if len(distinguished) > 1 or not others else []),
                          *(value_label(name, value) for name, value in zip(others, key[1:]))])
               for key in curves]
     return list(zip(labels, curves.values()))
