@@ -33,10 +33,10 @@ std::optional<std::pair<double, double>> bracket(const Function& falling) {
   return std::pair(low, high);
 }
 
-/// Sums over runs with x = r/(longest r), so that no power overflows.
+/// Sums over runs; x = r/(longest r), so that no power overflows, and k is the shape.
 struct PowerSums {
-  double power = 0;      ///< sum x^k
-  double power_log = 0;  ///< sum x^k log x
+  double power = 0;      ///< sum of x^k
+  double power_log = 0;  ///< sum of x^k log x
 };
 PowerSums power_sums(const std::vector<double>& log_x, double shape) {
   PowerSums sums;
@@ -48,9 +48,10 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
   return sums;
 }
 
-/// Distances of all runs for the test, x = r/(longest r), raised to at least a fraction of their mean.
+/// Distances of all runs for the test, x = r/(longest r). They are raised to at least a fraction of their
+/// mean.
 struct LogWays {
-  double longest = 0;         ///< [sigma]
+  double longest = 0;         ///< longest distance [sigma]
   std::vector<double> log_x;  ///< log x of every run
   double total = 0;           ///< sum of all x
   double clog_logs = 0;       ///< sum of log x over clogs

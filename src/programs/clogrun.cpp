@@ -133,7 +133,7 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
   return options;
 }
 
-/// Systems whose runs can be written to a file and filmed.
+/// Systems with runs that can be written to a file and filmed.
 const std::map<std::string, int (*)(cli::CommandLine&)>& followed_systems() {
   static const std::map<std::string, int (*)(cli::CommandLine&)> systems = {
       {"array", clogrun_array}, {"channel", clogrun_channel}, {"replay", clogrun_replay}};

@@ -37,7 +37,7 @@ constexpr const char* runs_name = "runs";
 constexpr const char* sums_name = "row_checksums";
 constexpr const char* sweep_kind = "clogsweep sweep";
 constexpr hsize_t rows_per_chunk = 64;
-constexpr std::size_t rows_per_block = 1024;  // rows that are copied at once
+constexpr std::size_t rows_per_block = 1024;  // number of rows in a copy
 
 using CheckSums = std::vector<std::uint32_t>;  // checksums of the rows
 

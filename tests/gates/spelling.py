@@ -61,7 +61,7 @@ def of_script(text):
 
 
 def prose(name):
-    """The lines of prose in a file, with their numbers. Messages in tests are left out, because tests quote mistakes of
+    """The lines of prose in a file, with their numbers. Messages in tests are excluded, because tests quote mistakes of
     users."""
     text = (known.ROOT / name).read_text()
     with_messages = not name.startswith("tests/")

@@ -12,7 +12,7 @@ LONG_PYTHON_LINES = 741
 
 
 def prose(text):
-    """The lines of prose, with their numbers. Tables, fenced blocks and indented blocks are left out."""
+    """The lines of prose, with their numbers. Tables, fenced blocks and indented blocks are excluded."""
     fenced = indented = False
     before = ""
     for number, line in enumerate(text.splitlines(), 1):

@@ -81,7 +81,7 @@ def shared_sweep(*arguments, program="clogsweep"):
 
 
 def undisturbed(sweep):
-    """The file of the same sweep without disturbance. The last two arguments, --output and its value, are left out."""
+    """The file of the same sweep without disturbance. The last two arguments, --output and its value, are excluded."""
     return shared_sweep(*sweep[:-2])
 
 

@@ -103,7 +103,7 @@ class Lengths(unittest.TestCase):
 
 
 class Frames(unittest.TestCase):
-    """A droplet like an upside-down U, whose inside touches a post."""
+    """A droplet like an upside-down U. The inside of the U touches a post."""
 
     POST = (0.0, 0.0, 0.3)
 

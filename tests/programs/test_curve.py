@@ -210,7 +210,7 @@ class Curve(ProgramTest):
             names.append(f"part{len(names)}.h5")
             self.succeed("clogsweep", "select", "sweep.h5", f"line_tension{tensions}", "--output", names[-1])
         printed = json.loads(self.succeed("clogfit", "curve", *names, "--format", "json").stdout)
-        # The last digits are left out, because they may depend on the number of BLAS threads.
+        # The last digits are excluded, because they may depend on the number of BLAS threads.
         one, other = (json.loads(json.dumps(curves), parse_float=lambda number: float(f"{float(number):.8g}"))
                       for curves in (printed["curves"], whole))
         self.assertEqual(one, other)

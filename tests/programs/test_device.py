@@ -761,7 +761,7 @@ class Drawings(Analysis):
 
 
 class WrongDrawings(Analysis):
-    """Tests drawings whose content the user may not have intended."""
+    """Tests drawings with content that the user may not have intended."""
 
     COMMAND = ["--droplet", "200um", "--output", "posts"]
 

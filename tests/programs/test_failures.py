@@ -355,7 +355,7 @@ class Devices(Analysis):
 
 
 class Searches(Analysis):
-    """Tests commands that ask how droplets end."""
+    """Tests commands that depend on the ends of droplets."""
 
     def run_and_fail(self, failures):
         """@return a function that runs a program. It makes those runs of the program's sweep fail that failures(rows)

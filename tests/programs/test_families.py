@@ -14,7 +14,7 @@ from support import BIN, FAMILIES, TIMING, SweepTest, shared_sweep, table
 
 import clogsweep
 
-# Families whose runs take seconds, with snapshots of ancestors and of daughters
+# Families with runs that take seconds. They have snapshots of ancestors and of daughters.
 LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
 # The first bytes of such a snapshot (src/core/run/family.cpp)
 SNAPSHOT_OF_A_DAUGHTER = (0x636C6F6766000001).to_bytes(8, "little")

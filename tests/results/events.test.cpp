@@ -49,7 +49,7 @@ class EventsTest : public testing::Test {
     for (const std::string& line : events_.look(file_)) all.push_back(json::parse(line));
     return all;
   }
-  /// The only event since the last look. Null if there is no event or more than one.
+  /// The only event since the last call. Null if there is no event or more than one.
   json only() {
     const std::vector<json> all = look();
     return all.size() == 1 ? all.front() : json();

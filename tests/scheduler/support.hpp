@@ -25,7 +25,7 @@ inline void expect(bool holds, const char* what) {
   std::_Exit(1);
 }
 
-/// A job whose number of slices depends on its task.
+/// A job with a number of slices that depends on its task.
 class SyntheticJob : public sweep::Job {
  public:
   SyntheticJob(std::int64_t task, std::span<const std::byte> snapshot)

@@ -8,7 +8,7 @@ namespace clog::soundness {
 /// Measures of a deformable droplet at one moment, or the worst values at several moments.
 struct Findings {
   int crossings = 0;  ///< Number of self-crossings, see num_self_crossings().
-  int enclosed = 0;   ///< Number of obstacles whose centre is inside the droplet.
+  int enclosed = 0;   ///< Number of obstacles with a centre inside the droplet.
   /// Depth of an obstacle's surface inside the interface [vertex diameters]. For meshes finer than 128
   /// vertices, the unit is the vertex diameter of 128 vertices.
   double overlap = 0;

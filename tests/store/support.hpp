@@ -20,7 +20,7 @@
 
 namespace clog::store {
 
-/// A test with an empty folder of its own.
+/// A test with a separate empty folder.
 class FolderTest : public testing::Test {
  protected:
   void SetUp() override {

@@ -352,7 +352,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
   }
 }
 
-/// The final row of a run whose droplet rested twice and ended hanging over an obstacle.
+/// The final row of a run. The droplet rested twice and ended hanging over an obstacle.
 const RunRow& hanging() {
   static const RunRow row = [] {
     RunRow one = row_of({{"max-time", "1000"},

@@ -84,7 +84,7 @@ def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
 
 
 def transition_moves(groups: list[Group]) -> Finding:
-    """Judges whether the range of transition() lies at larger line tensions in the widest gap than in the narrowest
+    """Judges whether the range of transition() is at larger line tensions in the widest gap than in the narrowest
     gap."""
     found = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
     wrapped, clogs = (sum(group[name] for group in groups) for name in ("wrapped", "clogs"))

@@ -39,7 +39,7 @@ class Statement:
     @param model  the model, interface and contact that the verdict is for
     @param criterion  what `agrees` and other verdicts mean, with thresholds; written before the runs are read
     @param judge  finds the verdict
-    @param figures  the figures whose sweeps the judge needs
+    @param figures  the figures with sweeps that the judge needs
     @param reasons  the reason for each verdict that has one, in addition to ALWAYS"""
 
     where: str
@@ -122,7 +122,7 @@ class Judged:
     @property
     def reason(self) -> str:
         """The reason for the verdict. If the statement does not agree or cannot be judged, the reason also names the
-        figures whose runs were tried."""
+        figures with runs that were tried."""
         reasons = ALWAYS | dict(self.statement.reasons)
         figures = ", ".join(self.statement.figures) if self.finding.verdict in (DOES_NOT, NOT_KNOWN) else ""
         runs = f"tried: runs of figure{'s' * (',' in figures)} {figures}" if figures else ""

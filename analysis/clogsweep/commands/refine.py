@@ -33,7 +33,7 @@ from ..tools.lists import number, numbers
 from . import command_line
 
 PASSED_ON = ("lab", "attempts", "isolate", "report-seconds", "master-computes", "instruction-set")
-BLOCKS_OF_A_VALUE = 50  # largest number of blocks of seeds of one value, unless --most-seeds is given
+BLOCKS_OF_A_VALUE = 50  # without --most-seeds, a value gets at most this number of blocks of seeds
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:

@@ -24,8 +24,8 @@ def shortest(value: Any) -> str:
 
 
 def with_interval(values: Mapping[str, Any], name: str) -> str:
-    """A number with its interval, such as `0.51 (0.44 to 0.60)`. The interval is left out if one of its ends is
-    unknown."""
+    """A number with its interval, such as `0.51 (0.44 to 0.60)`. If an end of the interval is unknown, only the number
+    is printed."""
     value, lower, upper = (values[f"{name}{end}"] for end in ("", "_lower", "_upper"))
     return f"{value:.3g}" if lower is None or upper is None else rounded.with_interval(value, lower, upper)
 

@@ -19,7 +19,7 @@ from .libraries import library
 from .walls import area, centroid
 
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3, "mil": 25.4e-6}
-MARGIN = 0.5  # Distance between the posts and the edge of a device whose edge is not drawn [sigma].
+MARGIN = 0.5  # Distance from the posts to the edge of a device, if the drawing has no edge [sigma].
 NEAR = 0.01  # A line that is part of the edge may be this far outside the edge [sigma].
 ROUNDED = 1e-6  # The centre of a fitted circle is rounded by at most this fraction of the size of the drawing.
 SAME = 1e-3  # Two circles are the same if they differ by at most this fraction of the diameter.

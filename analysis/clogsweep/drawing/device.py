@@ -28,9 +28,9 @@ OVER = [b"clogged", b"flowing", b"passed", b"broken", b"failed"]
 MOST_PANELS = 6
 # Width of the colour bar, or of the legend without its text, and width of a letter of this text [inches].
 BESIDE, OF_LETTER = 0.9, 0.055
-SITE = 0.25  # Clogs that are nearer to each other are at one place [sigma].
+SITE = 0.25  # Clogs closer together than this are at one place [sigma].
 STEP = 0.1  # Distance between two points of the path of a free droplet [sigma].
-CELL = 0.1  # Side of a cell of the map of passages [sigma].
+CELL = 0.1  # Side of a cell in the map of passages [sigma].
 
 
 @dataclasses.dataclass

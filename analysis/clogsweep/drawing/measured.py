@@ -22,7 +22,7 @@ LENGTHS = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
                *options: object) -> list[dict[str, Any]]:
     """The groups that clogfit lengths finds in a table of distances. Lengths are in the unit of the picture.
-    @param groups  of the sweep, whose laboratory gives the diameter
+    @param groups  of the sweep; its laboratory gives the diameter
     @throws UserError  if the table is in mm and no diameter is known"""
     answer = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths",
                                              table, "--format", "json", "--confidence", groups.confidence, *options))

@@ -15,7 +15,7 @@ from ..tools.hints import Group, Numbers
 from ..tools.texts import literal
 from . import lengths
 
-Curve = tuple[str, Group]  # The label of a curve, and a group whose distances are in the unit of the picture.
+Curve = tuple[str, Group]  # The label of a curve, and a group with distances in the unit of the picture.
 
 
 def longest_way(group: Group) -> float:

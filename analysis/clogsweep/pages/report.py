@@ -332,7 +332,7 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
-MAPPED = 4  # number of runs whose paths make up the map of each panel of a device
+MAPPED = 4  # number of runs that the map of each panel of a device includes
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:

@@ -52,7 +52,7 @@ def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
-    """Adds --programs, whose value is for programs_in()."""
+    """Adds --programs; its value is the folder for programs_in()."""
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of clogsweep, clogrun and clogfit (CLOG_BIN, that of the PATH, or beside this package)")
 

@@ -1,4 +1,5 @@
-"""Lists the values that a search may try, and chooses those whose runs give the most information for their work."""
+"""Lists the values that a search may try, and chooses those that give the most information for the work of their
+runs."""
 
 import math
 from collections.abc import Sequence

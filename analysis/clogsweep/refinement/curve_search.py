@@ -1,4 +1,4 @@
-"""Chooses the values and seeds whose runs improve the fitted curve of lambda most."""
+"""Chooses the values and seeds of the runs that improve the fitted curve of lambda most."""
 
 import itertools
 import math
@@ -33,7 +33,7 @@ class Options(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What the search knows at one moment."""
+    """The runs so far, and the curve that follows from them."""
 
     runs: pandas.DataFrame  # Sums over the runs of each value, including failed runs.
     curve: Curve | None  # The curve at the candidates, or None if no run has covered any distance.

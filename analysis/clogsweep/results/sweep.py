@@ -123,7 +123,7 @@ class Sweep:
         """Draws user-supplied circles with the places where droplets were released, passed and clogged, and the paths
         of droplets. Each of up to six parameter sets has a panel.
 
-        @param ways  number of runs of each panel whose paths are drawn as lines
+        @param ways  number of runs of each panel with a path that is drawn as a line
         @param map  number of runs in the map of each panel; all of them are replayed
         @param jobs  number of simultaneous replays
         @throws UserError  if the sweep has no user-supplied circles, or circles of several devices

@@ -208,8 +208,8 @@ def side_by_side(index: int, num_curves: int, values: Collection[float]) -> floa
 
 
 def far_apart(values: Collection[float], span: float) -> list[float]:
-    """Chooses the values whose labels have room side by side on a logarithmic axis. @param span  last value of the axis
-    divided by the first"""
+    """Chooses the values that have room for their labels side by side on a logarithmic axis. @param span  last value of
+    the axis divided by the first"""
     kept: list[float] = []
     for value in sorted(set(values)):
         if not kept or math.log(value / kept[-1]) >= 0.08 * math.log(span):

@@ -11,20 +11,20 @@ namespace clog::laboratory {
 /// The model's units in a laboratory, and the model's numbers for the droplet of the laboratory. Numbers are
 /// NaN if the description of the laboratory is incomplete.
 struct Scales {
-  double length = 0;   ///< sigma [m]
-  double gravity = 0;  ///< g_exp [m/s^2]
-  double time = 0;     ///< t0 = sqrt(sigma/g_exp) [s]
-  double speed = 0;    ///< v_t [m/s]
+  double length = 0;   ///< the model's sigma, the diameter of the droplet [m]
+  double gravity = 0;  ///< acceleration g_exp along the plates [m/s^2]
+  double time = 0;     ///< the model's t0 = sqrt(sigma/g_exp) [s]
+  double speed = 0;    ///< terminal speed v_t [m/s]
   double tension =
       0;  ///< interfacial tension of a droplet that moves like a simulated droplet with Gamma = 1 [N/m]
-  double line_tension_experiment = 0;  ///< Gamma_exp
+  double line_tension_experiment = 0;  ///< Gamma_exp, from the measured tension
   double line_tension = 0;             ///< Gamma of the model, tension_ratio times Gamma_exp
   double sag = 0;                      ///< sag of a droplet of this line tension on a flat wall [sigma]
-  double wall_stiffness = 0;           ///< E_w of the soft disk with the same sag
-  double terminal_speed = 0;           ///< V_t
+  double wall_stiffness = 0;           ///< E_w of the soft disk with this sag
+  double terminal_speed = 0;           ///< V_t, the terminal speed in the model's units
   double capillary_number = 0;         ///< Ca = pi/(4 Gamma), at the terminal speed
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]
-  double break_up_neck = 0;            ///< width of a neck that breaks, the thickness of the cell [sigma]
+  double break_up_neck = 0;  ///< width of a neck that breaks; it equals the thickness of the cell [sigma]
 };
 Scales scales_of(const Laboratory& lab);
 

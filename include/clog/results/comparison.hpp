@@ -74,11 +74,11 @@ struct Comparisons {
   double confidence = 0;               ///< of the intervals
   std::vector<std::string> columns;    ///< listed columns with a value that both sides have; the values in
                                        ///< these columns name a comparison
-  std::vector<std::string> differing;  ///< columns whose values here and there differ
+  std::vector<std::string> differing;  ///< columns with different values here and there
   std::vector<Comparison> all;
   std::vector<LeftOut> left_out;
   std::string unit = "sigma";      ///< unit of lengths: "sigma" or "mm"
-  std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
+  std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are also given in mm
   std::ptrdiff_t num_tests = 0;    ///< log-rank tests; copies of runs in several laboratories are one test
   double within = 0;  ///< clogs at most this far apart count as at the same place [sigma]; 0: half a spacing
 };

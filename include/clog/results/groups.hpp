@@ -87,8 +87,8 @@ struct Group {
     std::vector<fit::IncidenceStep> incidence;  ///< steps of F_c; empty without a clogging length
   };
   std::vector<EndsBy> causes;
-  fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
-  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, total distance divided by total time of the runs
+  fit::MeanSpeed relative_speed;         ///< mean of v_g/v_t over the runs
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, as total distance divided by total time of these runs
   /// v_g/v_t, total distance divided by total time of all runs, even of those with a short distance. A run
   /// counts until its end, a clogged run until its last dwell began. This speed is not biased towards fast
   /// runs. The mean over runs is: if droplets clog, only the faster ones go far enough to have a mean speed.
@@ -102,7 +102,7 @@ struct Group {
   double row_angle = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::uint32_t> seeds;    ///< seeds of the runs that count for the clogging length
   std::vector<fit::Observation> runs;  ///< outcomes of these runs, in the same order
-  int num_passed = 0;                  ///< runs whose droplet reached the exit of the device
+  int num_passed = 0;                  ///< runs with a droplet that reached the exit of the device
   int num_flowing = 0;                 ///< runs that max-time ended
   /// Number of runs in num_flowing whose droplet, at the end, had rested for longer than a free droplet takes
   /// to fall ten diameters. The next member is the shortest of these rests [t0].
@@ -118,7 +118,7 @@ struct Group {
   /// fits.
   int num_left_out = 0;
   int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
-  int num_stability_unknown = 0;    ///< clogs whose stability is unknown (column stability)
+  int num_stability_unknown = 0;    ///< clogs with unknown stability (column stability)
   int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
   /// Whether at least half of the clogs have the distance of another clog. If no run clogged, the distances
   /// of the runs that met an obstacle are compared.

@@ -19,7 +19,7 @@ struct MergedSweep {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< snapshots of unfinished runs
   std::int64_t num_shared = 0;                   ///< runs that several files have
-  std::int64_t num_differing = 0;                ///< shared runs whose results differ by instruction set
+  std::int64_t num_differing = 0;                ///< shared runs with results that differ by instruction set
   std::int64_t num_faulty = 0;  ///< rows that are excluded because they are physically impossible
   /// Numerical keys with different values in the files, if no parameter set is in two of them.
   std::set<std::string> differing_numerics;
@@ -31,8 +31,8 @@ struct MergedSweep {
 /// damaged or being written, or if two files have different circles under the same name
 MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker);
 
-/// Reads the rows of several files together, also of running sweeps and of files whose config is unreadable.
-/// A single file is returned as it is.
+/// Reads the rows of several files together, also of running sweeps and of files with an unreadable config. A
+/// single file is returned unchanged.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
 /// Changes the number of each task to its number in the settings of the runs, and the names of circles to

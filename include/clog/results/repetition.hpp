@@ -10,7 +10,7 @@ namespace clog::results {
 /// Replay of one run of a sweep.
 struct Repetition {
   sweep::RunRow row;
-  std::vector<std::string> differing;  ///< columns of results whose bits differ from the row
+  std::vector<std::string> differing;  ///< columns of results with bits that differ from the row
 };
 /// Whether two members of families are equal, bit for bit.
 bool are_equal(const Member& a, const Member& b);

@@ -24,7 +24,7 @@ class RunList {
   /// @param path  of the file that contains the rows
   void add_rows(const std::string& path, const sweep::Plan& plan, const std::vector<sweep::RunRow>& rows);
 
-  /// Adds the seed of a run whose parameter set is known. Returns whether it is.
+  /// Adds the seed of a run if its parameter set is known. Returns whether it is.
   bool add_seed(const sweep::RunRow& row);
   /// Adds the smallest unused seeds to every parameter set until it has `number` seeds. Sets without anything
   /// random are not changed.

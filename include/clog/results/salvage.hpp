@@ -12,7 +12,7 @@ namespace clog::results {
 struct Salvage {
   store::SweepFile table;                        ///< the table, including results that only the journal had
   std::vector<store::Journal::Entry> snapshots;  ///< snapshots of unfinished runs
-  std::int64_t num_from_journal = 0;             ///< rows of `table` whose result comes from the journal
+  std::int64_t num_from_journal = 0;             ///< rows of `table` with a result from the journal
   std::vector<std::string> damage;               ///< a sentence about each damaged part
 };
 

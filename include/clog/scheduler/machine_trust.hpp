@@ -50,7 +50,7 @@ class MachineTrust {
   struct Machine {
     bool in_service = true;
     bool has_succeeded = false;
-    std::set<std::int64_t> failures;  // tasks whose failures count against the machine
+    std::set<std::int64_t> failures;  // tasks with failures that count against the machine
     std::string message;              // message of the last failure
   };
   static constexpr std::size_t most_failures = 3;

@@ -45,7 +45,7 @@ Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
   const Period& period = obstacles.period();
   const Eigen::Array2d centre{period.along() / 2, period.across() / 2};
   Eigen::Array2d place = climb(obstacles, centre);
-  // Within a post, looks for places in circles about the centre.
+  // Within a post, the search continues at places on circles about the centre.
   constexpr double apart = 0.25;  // sigma
   for (int ring = 1; obstacles.is_within_post(place); ++ring) {
     if (ring * apart > std::max(period.along(), period.across()))

@@ -17,7 +17,7 @@ double twice_area(const Eigen::Array2d& a, const Eigen::Array2d& b, const Eigen:
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// Whether a and b lie strictly on different sides of the line through c and d.
+/// Whether a and b are strictly on different sides of the line through c and d.
 bool separates(const Eigen::Array2d& c, const Eigen::Array2d& d, const Eigen::Array2d& a,
                const Eigen::Array2d& b) {
   const double side_a = twice_area(c, d, a);

@@ -9,7 +9,7 @@
 
 namespace clog {
 
-/// Other keys whose values a text contains.
+/// Other keys with values that a text contains.
 using Named = std::initializer_list<const char*>;
 
 [[noreturn]] inline void refuse(const char* key, const std::string& value,

@@ -79,7 +79,7 @@ struct Touched {
   bool is_wrapped = false;
   std::vector<Obstacle> circles;  ///< the circles of a post
   std::optional<Wedge> wall;
-  double longest_link = 0;  ///< longest touching edge divided by the radius at which it lies; 0 for walls
+  double longest_link = 0;  ///< longest touching edge divided by its distance from the centre; 0 for walls
 };
 
 /// Smallest share of the support for which a wrapped obstacle counts as a carrier.

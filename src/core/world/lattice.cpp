@@ -75,8 +75,8 @@ std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstac
   return fits ? std::optional(fitting) : std::nullopt;
 }
 
-/// For each p, calls visit(lattice) for two lattices with allowed periods: those whose tilts are nearest to
-/// lattice_angle, one below and one above it.
+/// For each p, calls visit(lattice) for two lattices with allowed periods. They are those with the tilts
+/// nearest to lattice_angle, one below and one above it.
 template <class Visit>
 void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
   const double spacing = obstacles.spacing();

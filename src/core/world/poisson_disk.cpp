@@ -111,7 +111,7 @@ class SequentialAddition {
   /// darts have room. The statistics do not depend on these numbers, only the speed does.
   static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};
   static constexpr double darts_per_square = 1;  // number of darts per square in later rounds
-  /// Number of a cell in the grid, whose margins repeat the opposite side.
+  /// Number of a cell in the grid. The margins of the grid repeat the opposite side.
   using Cell = std::int32_t;
   /// A square that may still have room, or a dart. Its members are its place, measured from the corner of its
   /// cell, and the low end of its range of excesses.
@@ -275,7 +275,7 @@ class SequentialAddition {
     ++num_points_;
   }
 
-  /// Collects the points that may lie within the distance of a place in `cell`.
+  /// Collects the points that may be within the distance of a place in `cell`.
   void look_around(Cell cell) {
     const auto cell_size = static_cast<float>(cell_size_);
     int num_near = 0;

@@ -45,7 +45,7 @@ struct Surroundings {
   /// cell has to cover two cells downwards and one upwards.
   static constexpr double smallest_cell = 1 / 1.49;
 
-  /// Whether a point lies within the distance of a place in the cell.
+  /// Whether a point is within the distance of a place in the cell.
   bool reach(float place_x, float place_y) const {
     Integers is_near{};
     visit_points(place_x, place_y, [&](const Floats& x, const Floats& y) {

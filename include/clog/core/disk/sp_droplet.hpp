@@ -9,9 +9,9 @@
 namespace clog {
 
 /// Potential energy of a soft disk among obstacles (Cheng et al. Eq. 8), and the force that derives from it.
-/// Each obstacle or wedge whose surface is at a distance d < sigma/2 from the disk's centre (d < 0: the
-/// centre is inside) contributes (E_w/2)(1 - 2d/sigma)^2. The force is finite everywhere; exactly at an
-/// obstacle's centre it is zero.
+/// Let d be the distance of the surface of an obstacle or wedge from the disk's centre (d < 0: the centre is
+/// inside). If d < sigma/2, this obstacle or wedge contributes (E_w/2)(1 - 2d/sigma)^2. The force is finite
+/// everywhere; exactly at an obstacle's centre it is zero.
 class SpForces {
  public:
   SpForces(const RunParameters& run, const ObstacleArray& obstacles);

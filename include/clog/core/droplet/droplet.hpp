@@ -46,8 +46,8 @@ class Droplet {
   /// After this call, work() adds up the dissipated energy. This costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
   /// Work since measure_dissipation() [g rho sigma^3]: the energy lost to drag, and the work of the springs
-  /// along the interface, whose force derives from no potential energy. Both are sums by the trapezoidal
-  /// rule, which is second order in the time step, like the integrator.
+  /// along the interface. (The force of these springs derives from no potential energy.) Both are sums by the
+  /// trapezoidal rule, which is second order in the time step, like the integrator.
   struct Work {
     double dissipated = 0;
     double spreading = 0;

@@ -14,8 +14,8 @@ namespace clog {
 /// instruction sets.
 namespace kernel {
 struct ForceSums {
-  double largest;                ///< largest |f_i|
-  double power, speed2, force2;  ///< sum f v, sum v^2, sum f^2
+  double largest;                ///< largest absolute component of the force
+  double power, speed2, force2;  ///< sums over all components: f v, v^2, f^2
 };
 ForceSums sum_forces(std::ptrdiff_t n, const double* force, const double* velocity);
 /// v = kept v + gain f, limited to `fastest` in either direction; then x += time v.

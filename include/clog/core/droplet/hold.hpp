@@ -36,7 +36,7 @@ struct ClogGeometry {
       0;  ///< number of arcs; an arc is a chain of edges that touch one obstacle (post or wall)
   /// Largest part of the weight that the corners of the polygon can hold. Each wrapped obstacle contributes
   /// its part of the support times x^2/16. Here x is the length of the longest edge on the obstacle divided
-  /// by the radius at which this edge lies. NaN without support.
+  /// by the distance of this edge from the obstacle's centre. NaN without support.
   double mesh_hold = std::numeric_limits<double>::quiet_NaN();
   /// Circles of the wrapped obstacles that give at least a tenth of the support, in the droplet's
   /// coordinates.

@@ -22,7 +22,7 @@ double clearance(const ObstacleArray& obstacles, double x, double y, double limi
 DropletState state_at_rest(const Eigen::ArrayXd& droplet, const Eigen::Array2d& place,
                            const Eigen::Array2d& period);
 
-/// Number of obstacles whose centre lies inside the polygon.
+/// Number of obstacles with a centre inside the polygon.
 int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 
 /// @throws Error that names the reason and the remedy

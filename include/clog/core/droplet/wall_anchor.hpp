@@ -60,7 +60,7 @@ struct WallAnchor {
 class KnownAnchors {
  public:
   /// Moves the anchors from `anchors` into this object.
-  /// @param num_holders  find() finds only anchors whose holder has a smaller number than this
+  /// @param num_holders  find() finds only anchors with a holder below this number
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();

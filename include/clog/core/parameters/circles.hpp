@@ -30,9 +30,9 @@ inline bool share_centre(const Obstacle& one, const Obstacle& other) {
 /// files. A result row contains only the checksum of the circles.
 class OwnCircles {
  public:
-  /// @param circles  a radius of 0 stands for half of obstacle-diameter
-  /// @param source  their origin, for messages
-  /// @param droplet  diameter of the droplet for which they were drawn, if the source gives it [m]
+  /// @param circles  a radius of 0 means half of obstacle-diameter
+  /// @param source  the origin of the circles, for messages
+  /// @param droplet  diameter of the droplet for which the circles were drawn, if the source gives it [m]
   explicit OwnCircles(std::vector<Obstacle> circles, std::string source = "",
                       std::optional<double> droplet = {});
   /// Circles known only by their checksum. @throws Error  if the text does not have the form of check_sum()

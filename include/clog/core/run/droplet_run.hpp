@@ -138,9 +138,9 @@ class DropletRun {
                            std::span<const std::byte> snapshot);
   /// The last snapshot; empty before the first one.
   const std::vector<std::byte>& snapshot() const { return snapshot_; }
-  /// The state of a run whose droplet has broken up, from which broken() restores its result.
+  /// The state of a run after its droplet broke up. broken() restores the result from it.
   std::vector<std::byte> state_at_break_up() const;
-  /// A run whose droplet has broken up. @throws Error if the bytes are not from state_at_break_up()
+  /// A run after its droplet broke up. @throws Error if the bytes are not from state_at_break_up()
   static DropletRun broken(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
                            std::span<const std::byte> state_at_break_up);
 

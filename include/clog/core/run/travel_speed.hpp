@@ -36,12 +36,13 @@ TravelSpeed travel_speed(std::span<const TravelSample> samples);
 /// continue.
 std::optional<std::size_t> transient_length(std::span<const double> values);
 
-/// Standard error of the mean of correlated values, from the scatter of the means of blocks of 1, 2, 4, ...
-/// values (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). These estimates e_B grow until the blocks
-/// are independent. The result is that of the shortest block length B with B^3 > 2 n (e_B/e_1)^4, at which
-/// the remaining correlation is as small as the scatter of the estimate (Lee et al., Phys. Rev. E 83, 066706
-/// (2011)). NaN if no such B is shorter than n/2, and for fewer than 200 values, because the error would be
-/// too small if neighbours are correlated.
+/// Standard error of the mean of correlated values (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)).
+/// The values are divided into blocks of 1, 2, 4, ... values. For each block length B, the scatter of the
+/// blocks' means gives an estimate e_B. The estimates grow until the blocks are independent. The result is
+/// that of the shortest block length with B^3 > 2 n (e_B/e_1)^4, at which the remaining correlation is as
+/// small as the scatter of the estimate (Lee et al., Phys. Rev. E 83, 066706 (2011)). NaN if no such B is
+/// shorter than n/2. Also NaN for fewer than 200 values, because the error would be too small if neighbours
+/// are correlated.
 double blocked_error(std::span<const double> values);
 
 }  // namespace clog

@@ -28,9 +28,9 @@ inline constexpr double largest_angle_error = 0.1;
 /// as a smaller one.
 double largest_tilt(LatticeKind kind);
 
-/// The lattice whose tilt is nearest to lattice_angle, among those whose periods are at most `box` and
-/// `length` (0: `box`), and at least two spacings and `narrowest_period`. If several lattices are equally
-/// near, the one with the largest box is chosen. nullopt if no lattice has such periods.
+/// The lattice with the tilt nearest to lattice_angle. Its periods are at most `box` and `length` (0: `box`),
+/// and at least two spacings and `narrowest_period`. If several lattices are equally near, the one with the
+/// largest box is chosen. nullopt if no lattice has such periods.
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// nearest_lattice(); nullopt if its tilt is more than largest_angle_error away from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);

@@ -41,9 +41,9 @@ class ObstacleArray {
   std::span<const Obstacle> obstacles() const { return binned_.obstacles; }
   const std::vector<Wedge>& wedges() const { return wedges_; }
 
-  /// Appends to `out` every obstacle, periodic images included, whose surface may come within `margin` of the
-  /// rectangle [x_min, x_max] x [y_min, y_max]. All coordinates are relative to `origin`, a point of the
-  /// first period. Obstacles that are a little farther away may be included.
+  /// Appends to `out` every obstacle, periodic images included, with a surface that may come within `margin`
+  /// of the rectangle [x_min, x_max] x [y_min, y_max]. All coordinates are relative to `origin`, a point of
+  /// the first period. Obstacles that are a little farther away may be included.
   struct Window {
     double origin_x, origin_y;
     double x_min, x_max, y_min, y_max;
@@ -57,7 +57,7 @@ class ObstacleArray {
     Obstacle first, second;
     double gap;
   };
-  /// The post of each obstacle: two circles belong to one post if the centre of one lies within the other. A
+  /// The post of each obstacle. Two circles belong to one post if the centre of one is within the other. A
   /// post has the outline of the union of its circles. Circles with exactly the same centre form separate
   /// posts.
   std::vector<std::uint32_t> posts() const;
@@ -85,8 +85,8 @@ class ObstacleArray {
 };
 
 /// The post of each of a few circles. Posts are numbered from 0 in the order in which they first appear.
-/// Unlike ObstacleArray::posts(), this function considers only the given circles, so a post whose circles are
-/// connected only by other circles counts as several posts.
+/// Unlike ObstacleArray::posts(), this function considers only the given circles. So a post counts as several
+/// posts if only other circles connect the given ones.
 std::vector<int> posts_among(std::span<const Obstacle> circles);
 
 /// A Poisson-disk sample by random sequential addition. Discs are proposed one by one, at uniform places in

@@ -15,7 +15,7 @@ struct Angle {
       : radians(in_radians), cos(portable::cos(in_radians)), sin(portable::sin(in_radians)) {}
 };
 
-/// Infinite convex wall: all points that, seen from the tip, lie within `half_angle` of the axis. A circle
+/// Infinite convex wall: all points that, seen from the tip, are within `half_angle` of the axis. A circle
 /// rounds the tip. With half_angle = pi/2 the wall is a half-plane. Two wedges with opposite tips form a
 /// narrow channel (Cheng et al., Fig. 1).
 struct Wedge {

@@ -33,11 +33,12 @@ struct StepArrays {
   ContourArray length;         ///< lengths of the edges
   ContourPair push;            ///< kick of the vertices by contact
   ContourPair wetting;         ///< part of the kick by wetted walls that derives from no energy
-  ContourPair grad_x, grad_y;  ///< 6 a times the gradients of the centroid's x and of its y
+  ContourPair grad_x, grad_y;  ///< gradients of the centroid's x and of its y, times 6 a
   ContourArray rate;           ///< drag rate of a vertex [1/t0], if the rates differ
-  ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
-  ContourPair kicked;          ///< w, if keeps_kicked; see KickCoefficients
-  ContourPair chord;           ///< vector between a vertex's neighbours, for an implicit pressure
+  ContourArray damping,
+      kept;            ///< s and s (1 - h2 r) of KickCoefficients
+  ContourPair kicked;  ///< w of KickCoefficients, if keeps_kicked
+  ContourPair chord;   ///< vector between a vertex's neighbours, for an implicit pressure
 };
 
 /// Sums over the edges.
@@ -81,12 +82,13 @@ struct KickCoefficients {
 };
 /// The terms of a kick. Each combination is compiled separately.
 struct KickTerms {
-  bool elastic;                     ///< springs that carry tension; otherwise those along the interface
-  bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
-  bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
-  bool coupled;                     ///< whether the force on a vertex depends on the velocities of all
+  bool elastic;       ///< whether springs carry tension; otherwise they act along the interface
+  bool on_area;       ///< whether weight and mean drag act on the area; the vertices are then coupled
+  bool varying_rate;  ///< whether vertices have different drag rates (StepArrays::rate); otherwise all have
+                      ///< `rate`
+  bool coupled;       ///< whether the force on a vertex depends on the velocities of all
   bool implicit_pressure;           ///< see Coupling
-  double rate;                      ///< [1/t0]
+  double rate;                      ///< drag rate of all vertices [1/t0]
   double relative_rate, area_rate;  ///< rates of the drag by the mean velocities of vertices and area [1/t0]
 };
 /// Mean velocities, and their contributions to the velocities of the vertices.
@@ -101,14 +103,14 @@ struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< mean velocity of the vertices
   double area_x = 0, area_y = 0;  ///< velocity of the area's centroid
   double c_x = 0, c_y = 0;
-  double a_x = 0, a_y = 0;   ///< includes the force on the area; divided by 6 a
+  double a_x = 0, a_y = 0;   ///< a of KickCoefficients, with the force on the area; divided by 6 areas
   double half_pressure = 0;  ///< pressure that the implicit pressure adds, as a kick
 };
 /// Powers, each for M/N_v = 1.
 struct Power {
-  double drag;                ///< sum r_i v_i^2, the vertices' own share of the dissipation
-  double spreading;           ///< sum F_i v_i, with F_i the kick that spreads vertices along the interface
-  double spread_x, spread_y;  ///< sum F_i
+  double drag;       ///< dissipation by the vertices' own drag, sum r_i v_i^2
+  double spreading;  ///< power of the kicks F_i that spread vertices along the interface, sum F_i v_i
+  double spread_x, spread_y;  ///< sum of these kicks
 };
 /// A circle and the edges_per_group edges from `first` on; the bits of `edges` mark those that may touch the
 /// circle.

@@ -18,14 +18,14 @@ namespace clog::kernel::HWY_NAMESPACE {
 /// Sums for the coupled drag, where G is 6 a times the centroid's gradient, and s = 1/(1 + h r).
 struct KickSums {
   double force_x, force_y;        ///< kick by the force on the area
-  double w_x, w_y;                ///< sum w
-  double gw_x, gw_y;              ///< sum G w
-  double gg_xx, gg_xy, gg_yy;     ///< sum s G G^T
-  double s;                       ///< sum s
-  double g_xx, g_xy, g_yx, g_yy;  ///< sum s G
+  double w_x, w_y;                ///< sum of w
+  double gw_x, gw_y;              ///< sum of G w
+  double gg_xx, gg_xy, gg_yy;     ///< sum of s G G^T
+  double s;                       ///< sum of s
+  double g_xx, g_xy, g_yx, g_yy;  ///< sum of s G
   // The next members are for an implicit pressure; n is the chord turned outwards, twice the area's gradient.
-  double nn = 0, nf = 0;      ///< sum n.n, sum n.F
-  double ng_x = 0, ng_y = 0;  ///< sum G n
+  double nn = 0, nf = 0;      ///< sums of n.n and of n.F
+  double ng_x = 0, ng_y = 0;  ///< sum of G n
 };
 
 /// Computes the coupled drag and the force on the area. The velocities after the kick are

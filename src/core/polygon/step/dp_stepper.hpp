@@ -65,7 +65,7 @@ class DpStepper {
     int steps_left = 0;  // number of steps for which the present rates may still be used
     double h1 = 0, h2 = 0;
   };
-  /// The step whose last half kick is pending.
+  /// The step with a pending last half kick.
   struct OpenStep {
     double length = 0;  // 0 if no half kick is pending
     Pressure pressure = Pressure::present;

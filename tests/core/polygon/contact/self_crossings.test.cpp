@@ -13,7 +13,7 @@
 namespace clog::test_of_self_crossings {
 namespace {
 
-/// A droplet with a neck whose two sides approach each other.
+/// A droplet with a neck. The two sides of the neck approach each other.
 struct Neck {
   RunParameters run;
   DropletState state;

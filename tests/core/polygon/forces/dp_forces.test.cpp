@@ -377,7 +377,7 @@ TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
 }
 
 TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {
-  // A box whose lower edge spans an obstacle that touches no vertex.
+  // A box with a lower edge that spans an obstacle. The obstacle touches no vertex.
   Eigen::ArrayXd position(32);
   for (int i = 0; i < 16; ++i) {
     const int side = i / 4;

@@ -65,9 +65,9 @@ class SelfContacts {
   /// itself, the directions are equal, so the first vertex is paired with the first edge.
   struct Item {
     int edges;           ///< first edge of a group
-    int vertices;        ///< first vertex; numbers from N on stand for the contour's first vertices
-    std::uint8_t pairs;  ///< bit b: edge `edges` + b and the b-th vertex
-    bool backwards;      ///< whether the b-th vertex is counted from the last
+    int vertices;        ///< first vertex; vertex N + i is vertex i
+    std::uint8_t pairs;  ///< bit b: whether edge `edges` + b and the b-th vertex are a pair
+    bool backwards;      ///< whether vertices are counted from the last
   };
   const std::vector<Item>& items() const { return items_; }
 
@@ -84,7 +84,7 @@ class SelfContacts {
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;
   std::vector<Pair> sorted_;       // memory of the sort
-  std::vector<int> end_of_group_;  // index of the end of the pairs of each group of edges
+  std::vector<int> end_of_group_;  // for each group of edges, the index behind its last pair
   std::vector<int> item_of_;       // the latest item, by direction and first vertex
 
   double skin_ = 0;  // skin with which the present pairs were made [sigma]

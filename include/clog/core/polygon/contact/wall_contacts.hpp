@@ -21,9 +21,10 @@ inline double film_thickness(const DpParameters& dp) {
 }
 
 /// Lists of the obstacles near a polygon. `Keep` defines what is listed:
-/// - `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
+/// - `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle with a surface that was
+/// within
 ///   `range` + skin of the edge.
-/// - `touched_by_vertex`: vertex i lists every obstacle whose surface was within `range` + skin of the
+/// - `touched_by_vertex`: vertex i lists every obstacle with a surface that was within `range` + skin of the
 ///   vertex.
 /// - `nearest_to_vertex`: vertex i lists every obstacle that could become its nearest.
 ///
@@ -95,7 +96,7 @@ class WallContacts {
              other.least[1] <= most[1];
     }
   };
-  std::vector<Bounds> bounds_;  // bounds of each group of edges
+  std::vector<Bounds> bounds_;  // for each group of edges
   /// A group of edges near one circle, and the edges that the circle may touch, as bits, for each layer.
   struct NearbyGroup {
     int group;

@@ -9,8 +9,10 @@ namespace clog {
 inline constexpr double nearly_rigid_tension = 30;
 
 /// The automatic N_v. The corners of a polygon that hangs over an obstacle can hold up to x^2/16 of the
-/// weight. Here x is the length of the edges on the obstacle divided by the radius at which they lie. N_v
-/// limits this fraction to half a percent for the longest expected edges, and is between 128 and 1024.
+/// weight. Here x is the length of the edges on the obstacle divided by their distance from the obstacle's
+/// centre. N_v limits this fraction to half a percent for the longest expected edges, and is between 128 and
+/// 1024.
+/// 1024.
 /// @param obstacle_diameter  diameter of the smallest obstacle over which the droplet can hang; infinite if
 /// there is none [sigma]
 int automatic_vertices(const RunParameters& run, double obstacle_diameter);

@@ -17,12 +17,12 @@ namespace clog {
 
 /// Terms of the interface's force.
 struct InterfaceTerms {
-  double line_tension;   ///< gamma
-  double spring;         ///< k_l N_v
-  double spring_length;  ///< l0 or the mean edge length
-  double spreading;      ///< k_l N_v of springs that act along the interface only
-  double pressure;       ///< -k_a (a - a0)
-  double vertex_weight;  ///< M g / N_v along +x
+  double line_tension;   ///< tension gamma, without the springs
+  double spring;         ///< stiffness k_l N_v of springs that carry tension
+  double spring_length;  ///< their rest length: l0, or the mean edge length
+  double spreading;      ///< stiffness k_l N_v of springs that act only along the interface
+  double pressure;       ///< pressure by the area's stiffness, -k_a (a - a0)
+  double vertex_weight;  ///< weight of a vertex along +x, M g / N_v
 };
 
 /// Potential energy of a deformable polygon among obstacles, and the data from which the passes of a step

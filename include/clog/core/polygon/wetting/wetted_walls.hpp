@@ -66,7 +66,8 @@ class WettedWalls {
   /// Moves anchors if the forces of their springs exceed their limits, see ContactLine::follow().
   WallYield follow(DropletState& state, Purpose purpose) const;
 
-  /// Energy of the difference of tensions plus energy of the springs that hold ends [g rho sigma^3].
+  /// Energy that comes from the difference of tensions, and energy of the springs that hold ends [g rho
+  /// sigma^3].
   double tension_energy(const DropletState& state) const;
   double spring_energy(const DropletState& state) const;
 
