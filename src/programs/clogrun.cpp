@@ -56,7 +56,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
           "droplet will come to rest")
       .option("droplet",
               "replay: path of a daughter, as in the table of droplets; the file's lengths and times are in "
-              "units of this\ndaughter, whose diameter and birth are attributes of the file")
+              "units of this\ndaughter; its diameter and birth are attributes of the file")
       .option("output", "HDF5 file to create")
       .option("lab",
               "file that describes the laboratory, see clogfit units; determines terminal-speed and "

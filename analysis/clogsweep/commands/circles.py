@@ -47,10 +47,10 @@ def options() -> argparse.Namespace:
     parser.add_argument("--cell", help="use this cell of a GDSII file, "
                                        "with all cells to which it refers (the top cells)")
     parser.add_argument("--holes", action="store_true",
-                        help="the posts are holes in the drawn areas, whose outer edge is that of the device")
+                        help="the posts are holes in the drawn areas; their outer edge is that of the device")
     parser.add_argument("--posts", choices=("dark", "bright"),
                         help="brightness of the posts in a picture "
-                             "(dark, unless its border and most of its area are dark)")
+                             "(bright if the border and most of the area are dark, otherwise dark)")
     parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: use only this rectangle, "
                                                          "in the unit and coordinates that the drawing program shows")
     parser.add_argument("--flow", choices=TURNS, default="right", help="direction of the flow in the drawing (right)")

@@ -38,7 +38,7 @@ BLOCKS_OF_A_VALUE = 50  # without --most-seeds, a value gets at most this number
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", metavar="KEY[,KEY]", help="one key, or two with a comma between; the outermost values given for a key are its bounds")
+    parser.add_argument("keys", metavar="KEY[,KEY]", help="one key, or two separated by a comma; the outermost given values of a key are its bounds")
     parser.add_argument("settings", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUES", help="keys of clogsweep")
     parser.add_argument("--config", help="file with lines `key = value`")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="HDF5 file to create, to resume or to add to")
