@@ -94,7 +94,8 @@ void set_row_angle(const std::string& text, std::vector<results::Group>& groups)
   for (results::Group& group : groups) group.row_angle = angle;
 }
 
-/// @throws Error if there is no device, or if a line is behind the exit of one, where no droplet is followed
+/// @throws Error if there is no device, or if a line is behind the exit of a device, because droplets are not
+/// followed there
 void require_lines_in_devices(const std::string& text, const std::vector<double>& lines,
                               const std::vector<results::Group>& groups) {
   bool is_any = false;

@@ -1,4 +1,4 @@
-"""Tests droplets that break up and go on as daughters, from the sweep to its pictures."""
+"""Tests droplets that break up and continue as daughters, from the sweep to its pictures."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from support import BIN, FAMILIES, TIMING, SweepTest, shared_sweep, table
 
 import clogsweep
 
-# Families whose runs take seconds, with snapshots of ancestors and of daughters
+# Families with runs that take seconds. They have snapshots of ancestors and of daughters.
 LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
 # The first bytes of such a snapshot (src/core/run/family.cpp)
 SNAPSHOT_OF_A_DAUGHTER = (0x636C6F6766000001).to_bytes(8, "little")
@@ -80,8 +80,8 @@ class Families(SweepTest, Analysis):
         self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", 0).stdout)
         member = self.deepest()
         self.assertGreater(len(member.path), 1)
-        told = self.succeed("clogsweep", "replay", "s.h5", member.task, "--droplet", member.path).stdout
-        self.assertIn("the same bits", told)
+        printed = self.succeed("clogsweep", "replay", "s.h5", member.task, "--droplet", member.path).stdout
+        self.assertIn("the same bits", printed)
         paths = ", ".join(path for path in self.droplets[self.droplets.task == 0].path if path)
         for program, more in (("clogsweep", []), ("clogrun", ["--output", "r.h5"])):
             self.refuse(program, "replay", "s.h5", 0, "--droplet", "0000000", *more, words=[f"task 0 are {paths})"])

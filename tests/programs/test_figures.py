@@ -160,8 +160,8 @@ class Parts(unittest.TestCase):
         np.testing.assert_allclose([entry["delta_v"] for entry in plate.data], 0, atol=1e-12)
 
     def test_a_legend_stays_off_error_bars(self):
-        # The error bars fill the axes, completely or except for the lower right. The legend would have room above the
-        # points alone, but not above the bars.
+        # The error bars fill the axes completely, or everywhere except at the lower right. The legend would have room
+        # above the points, but not above their bars.
         for lowest in (6, 0):
             axes = style.new_figure().subplots()
             right = np.arange(12) > 8
@@ -337,7 +337,7 @@ class Figures(Drawn):
                 self.succeed("clogsweep", "--config", config, *beside, "--print-config")
 
     def test_soft_droplets_have_fine_meshes_or_their_own_inertia(self):
-        """The meshes are for droplets without friction, the inertia for those that slide off obstacles fast. Families
+        """The meshes are for droplets without friction, the inertia for droplets that slide off obstacles fast. Families
         are compared between meshes."""
         for points in (ROOT / "jobs/figures").glob("*.csv"):
             if points.name.startswith("families"):
@@ -357,13 +357,13 @@ class Figures(Drawn):
         ]:
             words = [word for setting in settings for word in ("--set", setting)]
             with self.subTest(settings=settings):
-                told = self.analyse("figures", "8a", "--programs", BIN, "--draw-only", "--output", ".", *words)
-                self.assertEqual(told.returncode, 2)
+                printed = self.analyse("figures", "8a", "--programs", BIN, "--draw-only", "--output", ".", *words)
+                self.assertEqual(printed.returncode, 2)
                 for word in ("speed.h5", *there):
-                    self.assertIn(word, told.stderr)
+                    self.assertIn(word, printed.stderr)
                 for word in absent:
-                    self.assertNotIn(word, told.stderr)
-                self.assertEqual("replaces speed.reduced.csv, which pairs line-tension and vertices" in told.stdout,
+                    self.assertNotIn(word, printed.stderr)
+                self.assertEqual("replaces speed.reduced.csv, which pairs line-tension and vertices" in printed.stdout,
                                  "--points" in absent)
 
     def test_mistakes_get_one_line(self):
@@ -520,8 +520,8 @@ class Pictures(Analysis):
 
     def test_clogs_are_drawn_from_a_sweep(self):
         self.copy_sweep("s.h5", *FEW)
-        told = self.draw("clogs", "s.h5", "--programs", BIN, "--most", 2).stdout
-        self.assertEqual(told, "s-clogs.png (and .pdf)\n")
+        printed = self.draw("clogs", "s.h5", "--programs", BIN, "--most", 2).stdout
+        self.assertEqual(printed, "s-clogs.png (and .pdf)\n")
         self.assert_picture("s-clogs")
         self.refuse_analysis("clogs", "s.h5", "--programs", BIN, "--output", "clogs", "--tasks", "0,77", words=["77"])
 
@@ -650,7 +650,7 @@ class Pictures(Analysis):
                 self.refuse_analysis(command, "s.h5", "--colours",
                                      words=[f"python3 -m clogsweep {command}: ", "--help"])
 
-    def test_a_machine_without_matplotlib_is_told_what_it_lacks(self):
+    def test_a_message_names_matplotlib_if_it_is_missing(self):
         self.write("matplotlib.py", "raise ImportError('No module named matplotlib')")
         environment = os.environ | {"PYTHONPATH": str(self.folder)}
         done = subprocess.run([str(BIN / "clogfit"), "report", "s.h5", "--output", "page.html"], cwd=self.folder,
@@ -734,20 +734,20 @@ class Pictures(Analysis):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, f"--frames={name}", "--output", "run.h5",
                         words=words)
         name = "film.mp4" if shutil.which("ffmpeg") else "film.gif"
-        told = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames",
+        printed = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames",
                             name).stdout
-        self.assertEqual(told.splitlines()[-1], name)
+        self.assertEqual(printed.splitlines()[-1], name)
         self.assertGreater((self.folder / name).stat().st_size, 1000)
         self.draw("droplet", "run.h5", "--output", "droplet")
         self.assert_picture("droplet")
         with h5py.File(self.folder / "run.h5") as file:
             polygons, times, obstacles = (file[name][:] for name in ("polygons", "polygon_times", "obstacles"))
-        told = self.draw("droplet", "run.h5", "--output", "droplet", "--pictures", "--film", "--colour",
+        printed = self.draw("droplet", "run.h5", "--output", "droplet", "--pictures", "--film", "--colour",
                          "mechanism").stdout
         frames = sorted((self.folder / "droplet-frames").iterdir())
         self.assertEqual(len(frames), len(times))
         self.assertNotEqual(frames[0].read_bytes(), frames[-1].read_bytes())
-        film = self.folder / told.splitlines()[0]
+        film = self.folder / printed.splitlines()[0]
         self.assertEqual(film.suffix, ".mp4" if shutil.which("ffmpeg") else ".gif")
         self.assertIn(film.read_bytes()[:8][4:] if film.suffix == ".mp4" else film.read_bytes()[:4], [b"ftyp", b"GIF8"])
 

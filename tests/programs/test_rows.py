@@ -78,7 +78,7 @@ class Parts(test_figures.Drawn):
                          [24, 4, 0, 2])
         assert_fitted(self, sweep)
 
-        # From the rows, figures are those of the sweep itself, except groups of which runs are missing.
+        # Figures from the rows are those of the sweep itself. Groups with missing runs are an exception.
         sweep.fit["groups"][0]["planned"] = 7
         finished.write("clogging-sp", sweep, rows)
         self.draw("figures", "7a", "--from-rows", rows, "--output", ".", "--programs", BIN)
@@ -87,7 +87,7 @@ class Parts(test_figures.Drawn):
                          sorted([str(group[name]) for name in names] for group in sweep.fit["groups"][1:]))
         self.assertIn("6 of 7 runs", (self.folder / "full" / "figure-7a.txt").read_text())
 
-        # Figures whose sweep is not there are named.
+        # Figures without a sweep are named.
         options = ["--from-rows", rows, "--output", ".", "--programs", BIN]
         self.refuse_analysis("figures", "9a", *options, words=["speed-sp", "--size full"])
         for option in ("--draw-only", "--set=seeds=1"):

@@ -19,8 +19,8 @@ Member member(const std::string& path, double diameter, double birth, double end
           .status = status};
 }
 
-/// Breaks at 15 into a half that clogs at 40 and two quarters, of which one is still moving at 70, and one is
-/// too small.
+/// A droplet that breaks at 15 into a half and two quarters. The half clogs at 40. One quarter is still
+/// moving at 70, and the other is too small.
 std::vector<Member> family() {
   const double half = std::sqrt(0.5), quarter = 0.5;
   return {member("", 1, 0, 15, MemberEnd::broken), member("0", half, 15, 40, MemberEnd::clogged),
@@ -51,7 +51,7 @@ TEST(Families, HaveNoLineBeyondTheFarthestDroplet) {
   EXPECT_TRUE(families_of(families, 0.95).lines.empty());
 }
 
-/// Without break-up, areas are 1, and the share that passes is the estimate of Kaplan and Meier.
+/// Without break-up, areas are 1, and the share that passes equals the estimate of Kaplan and Meier.
 TEST(Families, ThatDoNotBreakUpGiveTheProductLimitEstimate) {
   std::vector<std::vector<Member>> families;
   std::vector<fit::Observation> runs;

@@ -43,8 +43,8 @@ class Rows:
 
 def as_rows(device: Device, corner: float) -> Rows:
     """The posts of the device, with rows of circles in place of each outline that is not round.
-    @param corner  radius to which corners are rounded. If a post is too thin for this radius, nearly half of its width
-    is taken.
+    @param corner  radius to which corners are rounded. If a post is too thin for this radius, the radius is nearly half
+    of its width.
     @throws UserError  if an outline crosses itself"""
     geometry = shapely("geometry")
     frame = geometry.box(0, 0, device.length, device.width)
@@ -88,7 +88,7 @@ def deepest(polygon: Any) -> tuple[Any, float]:
 
 
 def cores(polygon: Any, corner: float) -> list[tuple[Any, float]]:
-    """The cores of a polygon. Circles of the returned radius whose centres are on the edge of a core lie within the
+    """The cores of a polygon. Circles of the returned radius with their centres on the edge of a core are within the
     polygon and touch its outline. In a thin polygon this radius is smaller than `corner`."""
     _, half_width = deepest(polygon)
     radius = min(corner, 0.9 * half_width)

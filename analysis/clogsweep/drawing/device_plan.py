@@ -57,8 +57,8 @@ def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> No
 
 
 def rings_among(circles: Numbers) -> list[Numbers]:
-    """Closed chains of overlapping circles, as centres (n, 2). The space inside such a chain is drawn filled, because
-    no droplet can enter it."""
+    """Closed chains of overlapping circles, as centres (n, 2). The inside of such a chain is drawn filled, because no
+    droplet can enter it."""
     def overlap(i: int, j: int) -> bool:
         return bool(np.hypot(*(circles[i, :2] - circles[j, :2])) < max(circles[i, 2], circles[j, 2]) / 2)
 
@@ -87,8 +87,8 @@ def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[N
 
 
 def draw_flow(axes: Axes, points_below: float) -> None:
-    """Draws an arrow along the flow, where there are no posts: below the right end of the axes, at a distance of
-    `points_below` points."""
+    """Draws an arrow along the flow where there are no posts: below the right end of the axes, `points_below` points
+    lower."""
     place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
     start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
     axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9,

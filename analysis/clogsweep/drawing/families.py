@@ -19,7 +19,7 @@ from .lengths import add_scale
 if TYPE_CHECKING:
     import pandas
 
-MOST_UNKNOWN = 0.1  # At the outlet, not more than this share of the area may be of unknown fate.
+MOST_UNKNOWN = 0.1  # Largest share of the area that may have an unknown fate at the outlet.
 END_COLOURS = {"clogged": style.COLOURS[1], "flowing": style.COLOURS[0], "passed": style.COLOURS[0],
                "small": style.COLOURS[3], "failed": style.COLOURS[6], "broken": "0.6"}
 END_WORDS = {"clogged": "clogged", "flowing": "still moving", "passed": "passed the exit",

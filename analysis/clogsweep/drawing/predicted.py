@@ -22,7 +22,7 @@ def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: flo
     for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}),
                               ("squeezed, by two obstacles", "squeezed", {"color": style.COLOURS[0]}),
                               ("wrapped, by one obstacle", "wrapped", {"color": style.COLOURS[1]})):
-        # Where only one of the two laws has a length, the line for both also has this length.
+        # If only one of the two laws has a length, the combined line equals this length.
         known = [math.isfinite(max(one.squeezed, one.wrapped) if name == "length" else getattr(one, name))
                  for one in found]
         if any(known):

@@ -47,8 +47,8 @@ def is_sealed(path: AnyPath) -> bool:
 
 
 def text(value: object) -> str:
-    """A word of a table, or lines of an attribute, with escapes for unprintable bytes, because a file from elsewhere
-    may contain any bytes."""
+    """A word of a table, or lines of an attribute. Unprintable bytes are escaped, because a file from elsewhere may
+    contain any bytes."""
     return printable(value.decode(errors="surrogateescape") if isinstance(value, bytes) else value, "\n\t")
 
 

@@ -86,7 +86,7 @@ TEST(Family, BeginsWhereTheMotherEnds) {
   }
 }
 
-/// The ancestor of a family runs like a droplet whose break-up ends its run.
+/// The ancestor of a family has the same run as a droplet for which break-up ends the run.
 TEST(Family, HasTheAncestorOfARunThatEndsAtBreakUp) {
   RunParameters alone = soft_run(2);
   alone.dp.break_up = BreakUp::end;
@@ -97,7 +97,7 @@ TEST(Family, HasTheAncestorOfARunThatEndsAtBreakUp) {
   EXPECT_TRUE(single.members().empty());
 }
 
-/// No number is the speed of these daughters, so their runs cannot begin.
+/// The speed of these daughters is NaN, so their runs cannot begin.
 TEST(Family, OutlivesADaughterWhoseRunFails) {
   RunParameters run = soft_run(1);
   run.drag.speed_exponent = std::numeric_limits<double>::quiet_NaN();
@@ -173,7 +173,7 @@ TEST(Daughter, HasTheParametersOfItsSize) {
   EXPECT_EQ(daughter.dp.break_up_neck, ancestor.dp.break_up_neck / d);
   EXPECT_DOUBLE_EQ(*daughter.obstacles.density.per_area, *ancestor.obstacles.density.per_area * d * d);
   EXPECT_DOUBLE_EQ(daughter.max_time, 100 / std::sqrt(d));
-  // Speeds are in sqrt(sigma g): the same speed is larger in the units of a smaller droplet.
+  // Speeds are in sqrt(sigma g). So in the units of a smaller droplet, the same speed is a larger number.
   EXPECT_DOUBLE_EQ(daughter.drag.terminal_speed * std::sqrt(d), ancestor.drag.terminal_speed);
   RunParameters faster_if_large = ancestor;
   faster_if_large.drag.speed_exponent = 1;
