@@ -21,9 +21,10 @@ def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: flo
     caption"""
     figure, axes = style.subplots(figsize=(6.8, 5.0))
     tensions = [one.tension for one in found]
+    colours = style.MECHANISM_COLOURS
     for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}),
-                              ("squeezed, by two obstacles", "squeezed", {"color": style.MECHANISM_COLOURS["squeezed"]}),
-                              ("wrapped, by one obstacle", "wrapped", {"color": style.MECHANISM_COLOURS["wrapped"]})):
+                              ("squeezed, by two obstacles", "squeezed", {"color": colours["squeezed"]}),
+                              ("wrapped, by one obstacle", "wrapped", {"color": colours["wrapped"]})):
         # Where only one of the two laws has a length, the line for both also has this length.
         known = [math.isfinite(max(one.squeezed, one.wrapped) if name == "length" else getattr(one, name))
                  for one in found]

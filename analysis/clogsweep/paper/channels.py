@@ -37,8 +37,9 @@ def profiles(runner: Runner, name: str, outlines: bool = False, **keys: object) 
 
 def parameters(run: Trajectory, orifice: float) -> str:
     row = run.row
-    return (rf"orifice ${orifice}\,\sigma$, $\Gamma = {row['line_tension']:g}$, $b_0/b_\infty = {row['near_wall_drag']:g}$, "
-            rf"terminal speed ${row['terminal_speed']:g}$, {row['vertices']} vertices, {interface_of(run.word('preset'))}")
+    return (rf"orifice ${orifice}\,\sigma$, $\Gamma = {row['line_tension']:g}$, "
+            rf"$b_0/b_\infty = {row['near_wall_drag']:g}$, terminal speed ${row['terminal_speed']:g}$, "
+            f"{row['vertices']} vertices, {interface_of(run.word('preset'))}")
 
 
 def ending(run: Trajectory) -> str:
