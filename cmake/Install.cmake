@@ -32,7 +32,7 @@ install(FILES "${PROJECT_BINARY_DIR}/_installed.py" DESTINATION "${CLOG_PYTHON_D
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 # Messages name pages of the handbook.
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.csv" PATTERN "*.png" PATTERN "*.ipynb" PATTERN "CMakeLists.txt" PATTERN "*.cpp" PATTERN "paper" EXCLUDE)
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.csv" PATTERN "*.png" PATTERN "*.ipynb" PATTERN "CMakeLists.txt" PATTERN "*.cpp" PATTERN "first-curve/sweep.h5" PATTERN "paper" EXCLUDE)
 
 # What a shell completes, from what the programs say of themselves
 

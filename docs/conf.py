@@ -18,7 +18,7 @@ release = version = re.search(r"project\(clogsweep\s+VERSION\s+([\d.]+)", (ROOT 
 
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_copybutton"]
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_static", "README.md", "paper", "gallery/tables", "gallery/rows"]
+exclude_patterns = ["_static", "README.md", "examples", "paper", "gallery/tables", "gallery/rows"]
 if tags.has("site"):  # noqa: F821, Sphinx's
     # What man pages need not.
     sys.path.insert(0, str(ROOT / "docs"))

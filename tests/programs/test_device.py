@@ -367,7 +367,7 @@ class Devices(Walls):
         panels, strip = figure.axes[:3], figure.axes[3]
         self.assertEqual([axes.get_ylabel() for axes in panels],
                          [f"diameter {mm:g} mm\n$y$ [mm]" for mm in (0.24, 0.2, 0.16)])
-        self.assertEqual(strip.get_xlabel(), "$x$ [mm], along the flow")
+        self.assertEqual(strip.get_xlabel(), "$x$ [mm], along gravity")
         self.assertIn("posts.csv: 2.8 x 1.6 mm", figure.texts[0].get_text())
         posts_drawn = [axes.collections[0].get_paths()[3].get_extents() for axes in panels]
         for extents in posts_drawn:

@@ -343,7 +343,7 @@ class Lengths(ProgramTest):
     def test_a_picture_has_the_survival_curve_of_each_group(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
         axes, = style.figure_of(survival_curve.draw_on, survival_curve.of_table(self.lengths("aml.csv")), "mm").axes
-        self.assertEqual(axes.get_xlabel(), "displacement along the flow $r$ [mm]")
+        self.assertEqual(axes.get_xlabel(), "displacement along gravity $r$ [mm]")
         curves = {line.get_label(): line for line in axes.lines if line.get_label().startswith("x ")}
         self.assertEqual(list(curves), ["x Maintained", "x Nonmaintained"])
         # From R: `survfit(Surv(time, status) ~ x, data = aml)`.

@@ -391,9 +391,9 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
         draw_part(axes, part, 2 if is_grid else 4)
     if maps:
         draw_scale(figure, panels, maps[0], parts)
-    device_plan.draw_flow(panels[-1], 26 if is_grid else 12)
+    device_plan.draw_gravity(panels[-1], 26 if is_grid else 12)
     draw_passages(below, parts)
-    below.set_xlabel(f"{place.coordinate('x')}, along the flow"
+    below.set_xlabel(f"{place.coordinate('x')}, along gravity"
                      + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
     walls = "between walls" if place.has_walls else "periodic across the flow"
     some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""

@@ -146,7 +146,7 @@ def draw_family(droplets: pandas.DataFrame, task: int, source: AnyPath, groups: 
                if status in set(family.status)]
     axes.legend(handles, [END_WORDS[status] for status in END_COLOURS if status in set(family.status)], frameon=False,
                 fontsize=8, loc="lower right", ncols=len(handles))
-    axes.set_xlabel(r"displacement along the flow $r/\sigma$")
+    axes.set_xlabel(r"displacement along gravity $r/\sigma$")
     if length := groups.laboratory.get("length_mm"):
         add_scale(axes, "top", length, "displacement [mm]")
     style.notes(axes, [f"task {task}: each bar is a droplet, as thick as its diameter, which is beside it"])

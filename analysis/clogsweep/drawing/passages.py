@@ -135,7 +135,7 @@ def draw_outline(axes: Axes, groups: Groups, run: Trajectory) -> None:
     surroundings.draw_droplet(axes, run, shown, (low + high) / 2)
     half = (high - low).max() / 2 + 0.3
     surroundings.frame_limits(axes, (-half, -half), (half, half))
-    axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
+    axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along gravity")
     axes.set_ylabel(r"$y/\sigma$")
     names = [*groups.curve_parameters(), groups.abscissa]
     label = ", ".join(

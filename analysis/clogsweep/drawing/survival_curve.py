@@ -105,7 +105,7 @@ def draw_on(axes: Axes, curves: Sequence[Curve], unit: str, mixture: Curve | Non
                 axes.fill_between(*zip(*known, end), step="post", color="black", alpha=0.12, linewidth=0)
     axes.set_xlim(left=begin)
     axes.set_ylim(0, 1.02)
-    style.label(axes, r"displacement along the flow $r/\sigma$" if unit == "sigma" else "displacement along the flow $r$ [mm]", "$P(r)$, not yet clogged")
+    style.label(axes, r"displacement along gravity $r/\sigma$" if unit == "sigma" else "displacement along gravity $r$ [mm]", "$P(r)$, not yet clogged")
     if any(label for label, _ in curves):
         style.legend(axes)
     style.notes(axes, ["steps: clogs; ticks: droplets that were last seen moving",

@@ -11,7 +11,7 @@ from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
-from . import AXES, INTERFACES, axis_label, interface_of, is_number, runs_a_point, parameter_label, symbol
+from . import AXES, INTERFACES, axis_label, interface_of, is_number, parameter_label, phrase, runs_a_point, symbol
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # names by obstacle_filling
@@ -271,7 +271,7 @@ class Groups:
         first = self.members[0]
         models = [name for model, name in (("dp", "deformable polygon"), ("sp", "soft disk")) if model in self.values("model")]
         words = [" and ".join(models)]
-        words += [self.parameter_label(name, first[name]) for name in self.columns
+        words += [phrase(self.columns[name], self.named(name, first[name])) for name in self.columns
                   if self._is_worth_a_word(name, first[name])]
         if self.values("obstacle_filling") == {"saturated"}:
             words.append("saturated arrays")

@@ -47,7 +47,7 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
                             begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
-    style.label(axes, r"displacement along the flow $r/\sigma$", "$P(r)$, not yet clogged")
+    style.label(axes, r"displacement along gravity $r/\sigma$", "$P(r)$, not yet clogged")
     mark_steps(axes)
     style.caption(axes, label or groups.caption())
     style.notes(axes, ["steps: clogs; ticks: censored runs; dashed: exponential of the same length"])

@@ -208,31 +208,33 @@ def side_by_side(index: int, num_curves: int, values: Collection[float]) -> floa
 
 
 def far_apart(values: Collection[float], span: float) -> list[float]:
-    """Chooses the values that have room for their labels side by side on a logarithmic axis. @param span  last value of
-    the axis divided by the first"""
+    """Chooses the values whose labels have room side by side on a logarithmic axis, round numbers first. @param span
+    last value of the axis divided by the first"""
+    def roundness(value: float) -> tuple[bool, int]:
+        digits = f"{value:.2e}".partition("e")[0].replace(".", "").rstrip("0")
+        return digits not in ("1", "2", "5"), len(digits)
+
     kept: list[float] = []
-    for value in sorted(set(values)):
-        if not kept or math.log(value / kept[-1]) >= 0.08 * math.log(span):
+    for value in sorted(set(values), key=lambda value: (roundness(value), value)):
+        if all(abs(math.log(value / other)) >= 0.08 * math.log(span) for other in kept):
             kept.append(value)
-    return kept
+    return sorted(kept)
 
 
 def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
     """Labels a logarithmic abscissa with plain numbers. If the values are few or within a decade, the values themselves
-    are the labels. A label for which there is no room is one line lower."""
+    are the ticks. Values for which there is no room have no label."""
     axes.set_xscale("log")
     axis = axes.xaxis
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
     if values and (len(set(values)) <= 10 or max(values) < 10 * min(values)):
         span = max(values) / min(values)
-        axis.set_ticks(upper := far_apart(values, span), minor=False)
         # Beside a single value, round numbers show the scale.
-        lower = sorted(set(values) - set(upper)) if span > 1 else list(matplotlib.ticker.MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(0.8 * upper[0], 1.25 * upper[0]))
-        axis.set_ticks(lower, minor=True)
-        labelled = far_apart(lower, span)
-        axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}" if value in labelled else ""))
-        axis.set_tick_params(which="minor",
-                             pad=4 + 1.2 * matplotlib.font_manager.FontProperties(size=matplotlib.rcParams["xtick.labelsize"]).get_size_in_points())
+        locator = matplotlib.ticker.MaxNLocator(4, steps=[1, 2, 5, 10])
+        around = [] if span > 1 else locator.tick_values(0.8 * min(values), 1.25 * min(values))
+        axis.set_ticks(labelled := far_apart({*values, *around}, span * logarithmic_margin(values)**2), minor=False)
+        axis.set_ticks(sorted(set(values) - set(labelled)), minor=True)
+        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     else:
         low, high = (min(values), max(values)) if values else axes.get_xlim()
         plain_logarithmic(axis, high / low)
