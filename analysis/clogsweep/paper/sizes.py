@@ -66,5 +66,5 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
     drawing.suptitle(describe(runner.columns(CONFIG), groups, ["vertices", "line_tension"]), fontsize=8, color="0.25")
     unknown = max(point["not_known"] for point in data)
     style.notes_of_panels(drawing, ["legend: number of droplets per released droplet, and their mean diameter",
-                                    f"at {outlet:g}σ the fate of at most {100 * unknown:.2g} % of the area is not known"])
+                                    f"at {outlet:g}σ at most {100 * unknown:.2g} % of the area is not known"])
     return Plate(drawing, data)
