@@ -57,7 +57,7 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
                       "clogged": line["clogged"], "small": line["small"], "not_known": line["not_known"]}
                      for i in range(len(passed["numbers"]))]
         axes.set_title(rf"$\Gamma = {tension:g}$", fontsize=9)
-        axes.set_ylim(bottom=0)
+        axes.set_ylim(0, 1.5 * axes.dataLim.ymax)  # The legend is above the bars.
         axes.legend(frameon=False, fontsize=7, loc="upper right")
     panels.flat[-1].set_xlim(0, 1)
     panels.flat[-1].set_xlabel(r"diameter $d/\sigma$")
@@ -65,6 +65,7 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
         rf"droplets per released droplet at ${outlet:g}\,\sigma$, in classes of ${width:g}\,\sigma$")
     drawing.suptitle(describe(runner.columns(CONFIG), groups, ["vertices", "line_tension"]), fontsize=8, color="0.25")
     unknown = max(point["not_known"] for point in data)
-    style.notes_of_panels(drawing, ["legend: number of droplets per released droplet, and their mean diameter",
-                                    f"at {outlet:g}σ at most {100 * unknown:.2g} % of the area is not known"])
+    style.notes_of_panels(drawing, [
+        "legend: number of droplets per released droplet, and their mean diameter",
+        f"at {outlet:g}σ the fate of at most {100 * unknown:.2g} % of the area is not known"])
     return Plate(drawing, data)
