@@ -50,6 +50,8 @@ BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", 
 # Soft droplets that break up, some of them twice, within a second
 FAMILIES = ["break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02", "line-tension=0.05",
             "vertices=64", "box=20", "obstacle-density=0.8", "obstacle-gap=0.3", "max-time=700", "seeds=1..4"]
+# The first bytes of a snapshot of a daughter (src/core/run/family.cpp)
+SNAPSHOT_OF_A_DAUGHTER = (0x636C6F6766000001).to_bytes(8, "little")
 # Columns that may differ when the same run is recomputed. The columns state who computed the run, and how long this
 # took.
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]

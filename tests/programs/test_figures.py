@@ -50,6 +50,8 @@ TINY = {
     "near-wall-drag": ["vertices=32", "line-tension=0.1,1", "seeds=1..3", "max-time=100", "terminal-speed=0.2"],
     "survival": ["vertices=32", "obstacle-density=saturated", "max-time=150"],
     "trajectory": ["vertices=32"],
+    "families": ["line-tension=0.05", "break-up-neck=0.08", "vertices=64", "speed-exponent=0,1",
+                 "self-contact-range=0.02", "obstacle-density=0.8", "obstacle-gap=0.3", "boxes=1", "max-time=700"],
 }
 SETTINGS = [f"{name}:{key}" for name, keys in TINY.items() for key in ["box=20", "seeds=1..2", *keys]]
 SET = [word for setting in [*SETTINGS, "max-time=40", "channel:vertices=64", "channel:max-time=300", "trajectory:max-time=150"] for word in ("--set", setting)]

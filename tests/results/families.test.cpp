@@ -46,6 +46,20 @@ TEST(Families, CountEachPartOfTheAreaOnce) {
   EXPECT_EQ(found.clogged.numbers[14], 1);  // 0.707
 }
 
+/// Nobody knows how far a droplet would have gone whose run failed.
+TEST(Families, CountTheAreaOfAFailedDaughterAsNotKnown) {
+  std::vector<Member> members = family();
+  members[1].status = MemberEnd::failed;  // the half that ends at 40
+  const std::vector<std::vector<Member>> families = {members};
+  const Families found = families_of(families, 0.95);
+  const FamilyLine& line = found.lines[2];  // at 50
+  EXPECT_EQ(line.clogged, 0);
+  EXPECT_NEAR(line.not_known, 0.5, 1e-15);
+  EXPECT_NEAR(line.passed.area + line.clogged + line.small + line.not_known, 1, 1e-15);
+  EXPECT_EQ(found.clogged.number, 0);
+  EXPECT_NEAR(line.passing, 0.75, 1e-15) << "a quarter of all was too small at 30";
+}
+
 TEST(Families, HaveNoLineBeyondTheFarthestDroplet) {
   const std::vector<std::vector<Member>> families = {{member("", 1, 0, 9, MemberEnd::flowing)}};
   EXPECT_TRUE(families_of(families, 0.95).lines.empty());

@@ -112,6 +112,29 @@ TEST(Family, OutlivesADaughterWhoseRunFails) {
   }
 }
 
+/// Daughters that are much too fast begin, but do not stay whole. The ancestor's row is as without them, and
+/// the area of each family is that of its leaves.
+TEST(Family, OutlivesADaughterThatDiverges) {
+  RunParameters run = soft_run(1);
+  run.drag.speed_exponent = -20;
+  const FamilyRun family = finished(run);
+  EXPECT_EQ(family.result().status, RunStatus::broken);
+  EXPECT_EQ(family.result().distance, finished(soft_run(1)).result().distance);
+  int num_failed = 0;
+  double area = 0;
+  for (const Member& member : family.members()) {
+    if (member.status != MemberEnd::broken) area += member.diameter * member.diameter;
+    if (member.status != MemberEnd::failed) continue;
+    ++num_failed;
+    EXPECT_GT(member.end.time, member.birth.time);
+    EXPECT_TRUE(std::isfinite(member.end.distance));
+    EXPECT_TRUE(std::isnan(member.end.lateral));
+    EXPECT_EQ(member.mechanism, ClogMechanism::none);
+  }
+  EXPECT_GT(num_failed, 0);
+  EXPECT_NEAR(area, 1, 1e-13);
+}
+
 TEST(Family, RepeatsOneMember) {
   const RunParameters run = soft_run(1);
   const auto walls = walls_of(run);
