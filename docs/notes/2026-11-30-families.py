@@ -157,7 +157,8 @@ def sweep(path, outlet=50.0):
         sets.setdefault(key, {})[int(row.seed)] = task
     passed = {key: [np.array(at_outlet(families[task], outlet)) for _, task in sorted(tasks.items())]
               for key, tasks in sets.items()}
-    print("line_tension,neck,vertices,speed_exponent,number,number_lower,number_upper,mean_diameter,lower,upper,seconds")
+    print("line_tension,neck,vertices,speed_exponent,number,number_lower,number_upper,"
+          "mean_diameter,lower,upper,seconds")
     for key, tasks in sets.items():
         number, diameter = (interval(passed[key], statistic, chance) for statistic in (mean_number, mean_diameter))
         print(",".join(f"{value:.4g}" for value in [*key, mean_number(passed[key]), *number,
