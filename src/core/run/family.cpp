@@ -121,14 +121,14 @@ void FamilyRun::Birth::save(ByteWriter& bytes) const {
   put(bytes, member);
   state.save(bytes);
   bytes.put(num_vertices);
-  bytes.put(way);
+  bytes.put(passing_distance);
 }
 
 void FamilyRun::Birth::restore(ByteReader& bytes) {
   get(bytes, member);
   state.restore(bytes);
   bytes.get(num_vertices);
-  bytes.get(way);
+  bytes.get(passing_distance);
   const bool is_placed = member.diameter > 0 && member.diameter <= 1 && member.birth.time >= 0 &&
                          std::isfinite(member.birth.time) && member.path.size() <= longest_path;
   const bool is_followed = member.status != MemberEnd::small;
