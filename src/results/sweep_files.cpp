@@ -127,8 +127,8 @@ void SweepFiles::tick() {
   begin_publication();
 }
 
-/// The row that readers see. If the run will be tried again, it has not failed yet, and its failed attempt
-/// has no distance.
+/// The row that readers see. If the run will be tried again, the row is that of a run at its release, because
+/// the failed attempt has no result.
 sweep::RunRow SweepFiles::published(sweep::RunRow row) const {
   if (!runs_.tries_again(row)) return row;
   reset_to_release(row);

@@ -143,7 +143,7 @@ class Parts(unittest.TestCase):
             self.assertGreater(np.abs(np.diff(colours, axis=0)).max(axis=1).min(), 0.3)
 
     def test_all_frames_of_the_reference_in_figure_B2_lie_within_the_compared_passages(self):
-        # Passages with the same speeds at other places. Deviations from the same passage would be 0.
+        # The passages have equal speeds at different places. Between equal passages, deviations would be 0.
         def run(step):
             h = np.arange(-2, 2, step)
             word = {"line_tension": 1.7, "near_wall_drag": 0.21, "terminal_speed": 0.028, "vertices": 64, "orifice": 0.9}

@@ -214,7 +214,7 @@ class Points(ProgramTest):
             self.assertIn("# 4 tasks: 4 parameter sets", blank)
             self.assertEqual([line for line in blank.splitlines() if not line.startswith("#")],
                              [line for line in quoted.splitlines() if not line.startswith("#")])
-        # Two missing values are the same run twice.
+        # Two points with missing values would be the same run.
         self.refuse("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", "\n".join([head, *cells]) + "\n"),
                     "--dry-run", words=["point 2 and point 4", "the same run"])
         # In a table of several columns, a blank line is no row.

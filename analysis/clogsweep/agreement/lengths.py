@@ -132,7 +132,7 @@ def neighbours_support(runner: Runner, family: Family) -> Finding:
 
 def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
     """Judges whether lambda is longer in the widest gap than in the narrowest gap, at every abscissa larger than
-    `beyond`. An abscissa without clogs in both gaps is excluded."""
+    `beyond`. An abscissa is excluded if no droplet clogs there in either gap."""
     verdicts, words = {}, []
     for place, members in curves(groups, abscissa).items():
         members = sorted(members, key=lambda group: group["obstacle_gap"])

@@ -34,7 +34,7 @@ SMALLEST_LENGTH = 4  # Below this length, predictions were too long by a third o
 # Smallest line tension without a warning. At a line tension of 0.5, up to 42 % of all clogs hang on three obstacles,
 # and at 0.3 up to 85 % (docs/reference/analysis.md).
 SOFTEST = 1
-ARRAYS, ARRAY_BOX = 4, 60  # Number of random arrays in which pairs are counted, and their width [sigma].
+ARRAYS, ARRAY_BOX = 4, 60  # number of random arrays in which pairs are counted; width of each array [sigma]
 
 # Keys that describe the array. All other keys describe the droplet. `obstacle-diameter` describes both.
 OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread",

@@ -45,7 +45,8 @@ class Crossing:
 
 
 def normal_deviate(confidence: float) -> float:
-    """Half the width of an interval of the normal distribution with this confidence, in standard deviations.
+    """The half-width of the interval that contains a normally distributed number with this confidence, in standard
+    deviations.
     @throws ValueError  unless 0 < confidence < 1"""
     if not 0 < confidence < 1:
         raise ValueError("a confidence is between 0 and 1")

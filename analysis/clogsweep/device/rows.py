@@ -76,7 +76,7 @@ def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
 
 
 def parts(shape: Any) -> list[Any]:
-    """The polygons of a shape, which consists of one or several."""
+    """The polygons of a shape. A shape may consist of several polygons."""
     return [part for part in getattr(shape, "geoms", [shape]) if part.geom_type == "Polygon" and part.area > 0]
 
 

@@ -95,7 +95,7 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
 
 
 def with_runs(members: Sequence[Group]) -> list[Group]:
-    """Leaves out groups in which no droplet met an obstacle."""
+    """The groups in which at least one droplet met an obstacle."""
     return [group for group in members if group["runs"]]
 
 

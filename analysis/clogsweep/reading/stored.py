@@ -103,7 +103,7 @@ def changed_run(path: AnyPath) -> UserError:
 
 
 def is_distance_table(path: AnyPath) -> bool:
-    """Whether this is the name of a text table, not of a sweep's file, as clogfit decides it."""
+    """Whether this is the name of a text table rather than of a sweep's file. The rule is that of clogfit."""
     return os.fspath(path).lower().endswith((".csv", ".tsv", ".txt", ".dat"))
 
 

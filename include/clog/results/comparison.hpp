@@ -99,9 +99,9 @@ std::string named_value(const std::string& column, const Value& value);
 /// @throws Error if the side has no runs, or runs without a clogging length
 void require_lengths(const Side& side);
 
-/// The sides of a comparison of files; the first file is the reference. @throws Error as read_with_caution()
+/// Makes a side for each file; the first file is the reference. @throws Error as read_with_caution()
 std::vector<Side> sides_of_files(const std::vector<std::string>& paths);
-/// The sides of a comparison of a column's values, in the order of numbers or words: the first value is the
+/// Makes a side for each value of a column, in the order of numbers or words. The first value is the
 /// reference.
 /// @throws Error if there is no such column of parameters, or only one value
 std::vector<Side> sides_of_column(const std::string& name, const store::SweepFile& file);
