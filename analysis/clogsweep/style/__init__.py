@@ -232,7 +232,8 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         # Beside a single value, round numbers show the scale.
         locator = matplotlib.ticker.MaxNLocator(4, steps=[1, 2, 5, 10])
         around = [] if span > 1 else locator.tick_values(0.8 * min(values), 1.25 * min(values))
-        axis.set_ticks(labelled := far_apart({*values, *around}, span * logarithmic_margin(values)**2), minor=False)
+        shown = span if span > 1 else logarithmic_margin(values)**2
+        axis.set_ticks(labelled := far_apart({*values, *around}, shown), minor=False)
         axis.set_ticks(sorted(set(values) - set(labelled)), minor=True)
         axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     else:
