@@ -7,7 +7,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 740
+LONG_PYTHON_LINES = 739
 
 
 def prose(text):
