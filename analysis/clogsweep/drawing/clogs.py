@@ -203,7 +203,8 @@ def overlaps(clog: Clog) -> Numbers:
 
 def title(row: np.void) -> str:
     """Describes the droplet and its clog in words."""
-    wrapped = f"{row['num_wrapped']} wrapped ({100 * row['wrapped_support']:.0f} % of support)" if row["num_wrapped"] > 0 else "none wrapped"
+    support = f"{100 * row['wrapped_support']:.0f} %"
+    wrapped = f"{row['num_wrapped']} wrapped ({support})" if row["num_wrapped"] > 0 else "none wrapped"
     return (rf"{mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$, task {row['task']}" "\n"
             rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, "
             rf"seed {row['seed']}" "\n"

@@ -313,7 +313,7 @@ def vertices(runner: Runner) -> Plate:
     inset.set_ylim(0, 0.5)
     inset.tick_params(labelsize=7)
     axes.legend(frameon=False, fontsize=8, loc="lower left")
-    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, "
+    style.caption(axes, rf"orifice $0.7\,\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, "
                         rf"terminal speed $0.032$, {interface_of(run.word('preset'))}"
                   "\ninset: near the first minimum")
     return Plate(drawing, data)
