@@ -28,12 +28,12 @@ def outlet_of(groups: list[Group]) -> float:
 
 
 def label_of(group: Group) -> str:
-    exponent = rf", $v\propto d^{{{group['speed_exponent']:g}}}$" if group["speed_exponent"] else ""
+    exponent = rf", $v_t\propto d^{{{group['speed_exponent']:g}}}$" if group["speed_exponent"] else ""
     return rf"neck ${group['break_up_neck']:g}\,\sigma$, {group['vertices']} vertices{exponent}"
 
 
 @figure("sizes", "diameters of droplets behind an array in which they break up, for three line tensions, two meshes, "
-                 "two necks and two laws of the daughters' speed", [CONFIG], "4 min")
+                 "two necks and two laws of the daughters' speed", [CONFIG], "2 min")
 def diameters_behind_an_array(runner: Runner) -> Plate:
     groups = [group for group in runner.sweep(CONFIG) if group.get("families")]
     outlet = outlet_of(groups)
@@ -58,7 +58,7 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
                      for i in range(len(passed["numbers"]))]
         axes.set_title(rf"$\Gamma = {tension:g}$", fontsize=9)
         axes.set_ylim(0, 1.5 * axes.dataLim.ymax)  # The legend is above the bars.
-        axes.legend(frameon=False, fontsize=7, loc="upper right")
+        axes.legend(frameon=False, fontsize=7, loc="upper left")
     panels.flat[-1].set_xlim(0, 1)
     panels.flat[-1].set_xlabel(r"diameter $d/\sigma$")
     panels[len(tensions) // 2, 0].set_ylabel(
