@@ -8,7 +8,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 739
+LONG_PYTHON_LINES = 737
 
 
 def prose(text):
