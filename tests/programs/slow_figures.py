@@ -27,10 +27,10 @@ class Figures(test_figures.Drawn):
         drawn = {(row["curve"].split(",")[0], row["vertices"], row["friction"], row["obstacle_gap"],
                   row["line_tension"], row["clogging_length_lower"]) for row in self.drawn("6c")}
         printed = {(config,
-                 *(str(group[name])
-                   for name in ("vertices", "friction", "obstacle_gap", "line_tension", "clogging_length_lower")))
-                for config in ("clogging-robust", "clogging-friction", "clogging-elastic")
-                for sweep in (config, f"{config}-mesh") for group in self.fit(sweep)}
+                    *(str(group[name])
+                      for name in ("vertices", "friction", "obstacle_gap", "line_tension", "clogging_length_lower")))
+                   for config in ("clogging-robust", "clogging-friction", "clogging-elastic")
+                   for sweep in (config, f"{config}-mesh") for group in self.fit(sweep)}
         self.assertEqual(len({curve for curve, *_ in printed}), 3)
         self.assertEqual(drawn, printed)
 

@@ -49,7 +49,7 @@ class Handbook(Installation):
                                               re.MULTILINE):
                 words = f"(default: {default})" if default else ""
                 is_named = any(option in re.findall(r"--[a-z-]+", options) and words in meaning
-                              for options, meaning in printed)
+                               for options, meaning in printed)
                 self.assertTrue(is_named or option in POSITIONAL, f"{program} {option} {words}")
             known = helped + "".join(self.called(program, command, "--help") for command in commands)
             for option in re.findall(r"--[a-z-]+", " ".join(options for options, _ in printed)):

@@ -90,8 +90,8 @@ class Run(ProgramTest):
 
     def test_a_coarse_polygon_in_a_channel_is_cautioned_against(self):
         for vertices, printed in ((96, ["with vertices=96 a droplet may clog where it passes with 128 or more "
-                                     "(corners of the polygon catch on the wedges' tips); "
-                                     "use vertices=128 or more"]), (128, [])):
+                                        "(corners of the polygon catch on the wedges' tips); "
+                                        "use vertices=128 or more"]), (128, [])):
             done = self.succeed("clogrun", "channel", f"vertices={vertices}", "max-time=1",
                                 "--output", f"{vertices}.h5")
             self.assertEqual(done.stderr.splitlines(), printed)
@@ -318,7 +318,7 @@ class Run(ProgramTest):
         self.assertEqual(process.returncode, 75)
         self.assertTrue(re.match("interrupted after r = ", output), output)
         self.assertRegex(printed, r"no film is drawn; PYTHONPATH=\S+ \S+ -m clogsweep droplet run.h5 --output=film --film "
-                               r"draws what there is\n$")
+                         r"draws what there is\n$")
         self.assertGreater(len(pandas.read_hdf(self.folder / "run.h5", "trajectory")), 10)
 
     def test_a_terminal_shows_the_progress(self):

@@ -191,7 +191,7 @@ class Sweep(ProgramTest):
 
         stored_rows.change(self.folder / "s.h5", edit)
         printed = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6",
-                            "--dry-run").stdout.splitlines()[-1]
+                               "--dry-run").stdout.splitlines()[-1]
         self.assertIn(f"9 of 12 runs; 3 to go: expected {3 / 3600:.2g} core-hours more ", printed)
 
     def test_the_expected_cost_is_within_its_interval_and_its_limit(self):

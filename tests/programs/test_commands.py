@@ -37,21 +37,21 @@ class Meant(ProgramTest):
 
     def test_an_unknown_key_is_quoted_as_it_was_typed(self):
         for typed, printed in [("line-tensoin=1", "unknown key line-tensoin; did you mean line-tension?"),
-                            ("--line-tensoin=1", "unknown option --line-tensoin; did you mean --line-tension?"),
-                            ("frobnicate=1", "unknown key frobnicate; clogsweep --help lists the options")]:
+                               ("--line-tensoin=1", "unknown option --line-tensoin; did you mean --line-tension?"),
+                               ("frobnicate=1", "unknown key frobnicate; clogsweep --help lists the options")]:
             self.refuse("clogsweep", typed, "--output", "s.h5", words=[printed])
 
     def test_a_part_of_a_key_or_its_symbol_is_answered_with_the_key(self):
         for typed, printed in [("gap=0.3", "unknown key gap; did you mean obstacle-gap?"),
-                            ("--gap=0.3", "unknown option --gap; did you mean --obstacle-gap?"),
-                            ("contact=edge", "unknown key contact; did you mean wall-contact or self-contact?"),
-                            ("obstacle=a.csv",
-                             "unknown key obstacle; did you mean obstacles or obstacle-gap or obstacle-density?"),
-                            ("Gamma=0.3", "unknown key Gamma; did you mean line-tension?"),
-                            ("Γ=0.3", "unknown key Γ; did you mean line-tension?"),
-                            ("w_ob=0.3", "unknown key w_ob; did you mean obstacle-gap?"),
-                            ("Nv=64", "unknown key Nv; did you mean vertices?"),
-                            ("Frobnicate=0.3", "unknown key Frobnicate; clogsweep --help lists the options")]:
+                               ("--gap=0.3", "unknown option --gap; did you mean --obstacle-gap?"),
+                               ("contact=edge", "unknown key contact; did you mean wall-contact or self-contact?"),
+                               ("obstacle=a.csv",
+                                "unknown key obstacle; did you mean obstacles or obstacle-gap or obstacle-density?"),
+                               ("Gamma=0.3", "unknown key Gamma; did you mean line-tension?"),
+                               ("Γ=0.3", "unknown key Γ; did you mean line-tension?"),
+                               ("w_ob=0.3", "unknown key w_ob; did you mean obstacle-gap?"),
+                               ("Nv=64", "unknown key Nv; did you mean vertices?"),
+                               ("Frobnicate=0.3", "unknown key Frobnicate; clogsweep --help lists the options")]:
             with self.subTest(typed=typed):
                 self.refuse("clogsweep", typed, "--output", "s.h5", words=[printed + "\n"])
         self.refuse("clogrun", "array", "Gamma=0.3", "--output", "r.h5", words=["did you mean line-tension?"])

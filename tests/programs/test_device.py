@@ -170,7 +170,7 @@ class Devices(Walls):
                      "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "s.h5")
         printed = self.succeed("clogfit", "s.h5").stdout
         self.assertRegex(printed, r"1 run ended by max-time with the droplet at rest for 1[34]\d\d t0 or longer: "
-                               r"--dwell=1000 counts it as clogged")
+                         r"--dwell=1000 counts it as clogged")
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
         self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
@@ -736,8 +736,8 @@ class Drawings(Analysis):
             off = np.abs(along[0] * (triangle[:, 1] - y) - along[1] * (triangle[:, 0] - x)) / np.hypot(*along)
             self.assertAlmostEqual(off.min(), radius, delta=1e-4)
         printed = self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "side-walls=on",
-                            "release=entrance", "entrance=8", "exit=13", "line-tension=1", "max-time=300", "seeds=1..4",
-                            "--output", "s.h5")
+                               "release=entrance", "entrance=8", "exit=13", "line-tension=1", "max-time=300",
+                               "seeds=1..4", "--output", "s.h5")
         self.assertEqual(set(table(self.folder / "s.h5")["status"]), {"passed"}, printed.stderr)
         for name in ("posts.csv", "posts.png", "posts.pdf"):
             (self.folder / name).unlink()
@@ -875,7 +875,7 @@ class WrongDrawings(Analysis):
         self.assertIn("1 outline or line extends along the whole device and is taken for a wall", printed)
         self.assertIn("box=6 length=18", printed)
         printed = self.said_of("down", "--flow", "down", circles=[(300, 800), (900, 800)],
-                            outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
+                               outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
         self.assertIn("box=5.95 length=18", printed)
         with self.subTest("walls are single lines"):
             sides = [((0, 0), (3600, 0)), ((3600, 1200), (0, 1200))]
@@ -897,13 +897,13 @@ class WrongDrawings(Analysis):
             self.assertNotIn("skipped", printed)
         with self.subTest("a long outline that is the only post is none"):
             printed = self.said_of("only", "--as-rows", outlines=[box(0, 500, 3600, 520)],
-                                lines=[((500, 800), (600, 900))])
+                                   lines=[((500, 800), (600, 900))])
             self.assertIn("1 post, device", printed)
         with self.subTest("a wall with teeth is a post"):
             teeth = [(3600 - 100 * i, 20 + 40 * (i % 2)) for i in range(37)]
             printed = self.said_of("teeth", "--as-rows", circles=[(800, 300), (800, 900)],
-                                outlines=[[(0, 0), (3600, 0), *teeth],
-                                          box(0, 1200, 3600, 1220)])
+                                   outlines=[[(0, 0), (3600, 0), *teeth],
+                                             box(0, 1200, 3600, 1220)])
             self.assertIn("1 outline or line extends along the whole device", printed)
             self.assertIn("3 posts", printed)
 
@@ -1499,7 +1499,7 @@ class OtherTools(Analysis):
         self.assertEqual((self.drawing.united[1], self.drawing.duplicates), (2, 1))
         printed = self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts").stdout
         self.assertRegex(printed, r"read \d+ objects; \d+ outlines that touch united into 2 outlines; "
-                               r"1 duplicate ignored; 1 unit is 1 um, 0.005 droplet diameters")
+                         r"1 duplicate ignored; 1 unit is 1 um, 0.005 droplet diameters")
         third = [(500 + 50 * np.cos(angle), 600 + 50 * np.sin(angle)) for angle in np.linspace(0, 2 * np.pi / 3, 41)]
         turned = [[((x - 500) * c - (y - 600) * s + 500, (x - 500) * s + (y - 600) * c + 600)
                    for x, y in [(500, 600), *third]]
@@ -1579,7 +1579,7 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(device, [(300, 50, 100), (500, 40, 100), (1100, 650, 100)], atol=1e-9)
         self.assertEqual(self.drawing.outside, 4)
         printed = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "posts", "--region",
-                         "500,1200,2000,0").stdout
+                            "500,1200,2000,0").stdout
         self.assertIn("device 7.5 x 3.5 droplet diameters (the region)", printed)
         self.assertIn("4 outside the region", printed)
         self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "500,0,500,9",
@@ -1613,7 +1613,7 @@ class OtherTools(Analysis):
                              words=["not round", "cut scale bars", "--region"])
         # If users follow the message, the bar becomes a post, and a message says so.
         printed = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred",
-                         "--as-circles").stdout
+                            "--as-circles").stdout
         self.assertIn(f"{len(ROW) + 1} posts, device", printed)
         x, y = map(float, re.search(r"1 post is at least three times as long as wide, at x=([0-9.]+) um, "
                                     r"y=([0-9.]+) um; if this is a scale bar", printed).groups())

@@ -739,7 +739,7 @@ class Pictures(Analysis):
                         words=words)
         name = "film.mp4" if shutil.which("ffmpeg") else "film.gif"
         printed = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames",
-                            name).stdout
+                               name).stdout
         self.assertEqual(printed.splitlines()[-1], name)
         self.assertGreater((self.folder / name).stat().st_size, 1000)
         self.draw("droplet", "run.h5", "--output", "droplet")
@@ -747,7 +747,7 @@ class Pictures(Analysis):
         with h5py.File(self.folder / "run.h5") as file:
             polygons, times, obstacles = (file[name][:] for name in ("polygons", "polygon_times", "obstacles"))
         printed = self.draw("droplet", "run.h5", "--output", "droplet", "--pictures", "--film", "--colour",
-                         "mechanism").stdout
+                            "mechanism").stdout
         frames = sorted((self.folder / "droplet-frames").iterdir())
         self.assertEqual(len(frames), len(times))
         self.assertNotEqual(frames[0].read_bytes(), frames[-1].read_bytes())

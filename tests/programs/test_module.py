@@ -279,7 +279,8 @@ class Module(Analysis):
                               ("import clogsweep.commands.predict", ["numpy", "h5py"])):
             with self.subTest(lines=lines):
                 printed = subprocess.run([sys.executable, "-c", f"import sys, clogsweep\n{lines}\nprint([name for name in {libraries} if name in sys.modules])"],
-                                      cwd=self.folder, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")}, capture_output=True, text=True, check=True)
+                                         cwd=self.folder, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")},
+                                         capture_output=True, text=True, check=True)
                 self.assertEqual(printed.stdout, f"{loaded}\n")
 
     def test_programs_that_are_not_there_are_asked_for(self):

@@ -161,15 +161,15 @@ class Points(PointsTest):
     def test_points_without_chance_have_one_run(self):
         self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\nwall,\n")
         printed = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv",
-                            "--dry-run").stdout
+                               "--dry-run").stdout
         self.assertIn("# 14 tasks: 3 parameter sets, 1 to 12 seeds each", printed)
         printed = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12,
-                            "obstacle-layout=channel,wall", "--dry-run").stdout
+                               "obstacle-layout=channel,wall", "--dry-run").stdout
         self.assertIn("# 2 tasks: 2 parameter sets", printed)
         self.write("c.csv", "x,y\n5,5\n")
         self.write("p.csv", "obstacles,release\nc.csv,centre\nc.csv,anywhere\n")
         printed = self.succeed("clogsweep", "vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points",
-                            "p.csv", "--dry-run").stdout
+                               "p.csv", "--dry-run").stdout
         self.assertIn("# 13 tasks: 2 parameter sets, 1 to 12 seeds each", printed)
         self.refuse("clogsweep", "vertices=64", "box=10", "--until-precision", "20%", "--points", "p.csv", "--output",
                     "s.h5", words=["no place for --until-precision (nothing is random with release=centre"])

@@ -469,7 +469,7 @@ class CriticalAngle(RefineTest):
 
     def test_a_dry_run_tells_what_the_rounds_may_cost(self):
         printed = self.refine("lattice-angle", *LATTICE, "lattice-angle=10.01,40", "max-time=1000",
-                           "--until=critical-angle=0.5", "--dry-run").stdout
+                              "--until=critical-angle=0.5", "--dry-run").stdout
         for words in ("5 tasks: 5 parameter sets, 1 seed each", "takes about 2 more rounds, 6 runs"):
             self.assertIn(words, printed)
 

@@ -52,7 +52,7 @@ class Browser(ProgramTest):
         cls.page = pathlib.Path(folder.name) / "page.html"
         sweep = shared_sweep(*cls.KEYS)
         printed = subprocess.run([BIN / "clogfit", sweep, "--format", "json"], check=True, capture_output=True, text=True,
-                              timeout=LONGEST)
+                                 timeout=LONGEST)
         cls.groups = json.loads(printed.stdout)["groups"]
         subprocess.run([BIN / "clogfit", "report", sweep, "--output", cls.page, "--examples", "1"], check=True,
                        capture_output=True, timeout=LONGEST)

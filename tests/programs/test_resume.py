@@ -242,7 +242,7 @@ class Resumed(SweepTest):
         for command in (("clogsweep", "status", "s.h5"), ("clogfit", "s.h5")):
             printed = self.run_program(*command).stderr
             self.assertRegex(printed, r"s.h5: \d+ runs? ended that only the journal of the stopped sweep has; "
-                                   r"the sweep's own command adds (it|them)\n")
+                             r"the sweep's own command adds (it|them)\n")
         self.succeed("clogsweep", *SEVERAL_SLOW, ranks=2)
         self.assertNotIn("journal", self.run_program("clogsweep", "status", "s.h5").stderr)
         self.check_equal("s.h5", undisturbed(SEVERAL_SLOW))

@@ -214,10 +214,11 @@ class Channels(Analysis):
 
     def test_keys_without_effect_or_out_of_range_are_refused(self):
         for words, shown_text in [(["obstacle-gap=0.3"], ["obstacle-gap", "no array"]),
-                            (["seeds=1..5"], ["seeds=1..5", "nothing is random"]),
-                            (["obstacles=none", "box=20"], ["box", "no array"]),
-                            (["start=-0.1"], ["start", "clear of the wedges"]), (["end=-3"], ["end", "downstream"]),
-                            (["orifice=0"], ["orifice"])]:
+                                  (["seeds=1..5"], ["seeds=1..5", "nothing is random"]),
+                                  (["obstacles=none", "box=20"], ["box", "no array"]),
+                                  (["start=-0.1"], ["start", "clear of the wedges"]),
+                                  (["end=-3"], ["end", "downstream"]),
+                                  (["orifice=0"], ["orifice"])]:
             names = [word.split("=")[0] for word in words]
             keys = [word for word in CHANNEL if word.split("=")[0] not in names]
             self.refuse("clogsweep", *keys, "line-tension=1", *words, "--output", "s.h5", words=shown_text)

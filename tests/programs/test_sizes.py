@@ -234,7 +234,7 @@ class Sizes(LaboratoryTest):
 
         def sweep(*options, output, ranks=None):
             printed = self.sweep(*keys, *options, output=output, diameter="0.8 mm", angle="20 deg, 45 deg",
-                              ranks=ranks).stderr
+                                 ranks=ranks).stderr
             rows = table(self.folder / output)
             per_seed = rows.groupby("seed")
             self.assertTrue((per_seed.laboratory.nunique() == 2).all())

@@ -227,7 +227,7 @@ class Points(ProgramTest):
                            ("comma", "obstacle-diameter;seeds\n0,4mm;1\n0,8 mm;2\n1,5e3um;3\n")):
             self.write("p.csv", text)
             printed[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
-                                      "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
+                                         "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
         self.assertEqual(printed["comma"], printed["point"])
         self.refuse("clogsweep", "box=20", "obstacle-gap=0.4", "--lab", "lab.cfg", "--points",
                     self.write("p.csv", "obstacle-diameter;seeds\n1,350mm;1\n"), "--dry-run",

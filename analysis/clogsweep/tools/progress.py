@@ -44,5 +44,5 @@ def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
     for number, item in enumerate(items, start=1):
         yield item
         line.redraw(lambda seconds: f"{what} {number} of {total}, "
-                                   f"{readable_duration(seconds * (total / number - 1))} left")
+                    f"{readable_duration(seconds * (total / number - 1))} left")
     line.wipe()
