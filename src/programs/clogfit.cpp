@@ -94,7 +94,8 @@ void set_row_angle(const std::string& text, std::vector<results::Group>& groups)
   for (results::Group& group : groups) group.row_angle = angle;
 }
 
-/// @throws Error if there is no device, or if a line is behind the exit of one, where no droplet is followed
+/// @throws Error if there is no device, or if a line is behind the exit of a device, because droplets are not
+/// followed there
 void require_lines_in_devices(const std::string& text, const std::vector<double>& lines,
                               const std::vector<results::Group>& groups) {
   bool is_any = false;
@@ -153,7 +154,7 @@ int clogfit(int argc, const char* const* argv) {
           "no place for '{}' (clogfit reads files; clogsweep select takes some rows of one)", path));
   }
   const store::SweepFile sweep = results::read_together(paths);
-  if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; start its sweep, or resume it");
+  if (sweep.rows.empty()) throw Error("no runs yet in " + joined(paths) + "; start or resume the sweep");
   for (const char* option : {"dwell", "mixture"})
     if (line.has(option) && std::ranges::none_of(sweep.rows, results::has_clogging_length))
       throw Error(fmt::format(

@@ -150,7 +150,7 @@ void draw(const cli::CommandLine& line, const std::vector<std::string>& paths) {
 int clogfit_compare(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit compare", compare_usage);
   line.words("file", "sweep files")
-      .option("by", "key whose values are compared with each other")
+      .option("by", "key; its values are compared with each other")
       .option(
           "within",
           "clogs of a pair within this distance are at the same place (half the sum of obstacle diameter and "

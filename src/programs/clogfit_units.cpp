@@ -141,7 +141,7 @@ Line line_of(const Conversion& conversion, double model) {
           fmt::format("{} = {}", conversion.symbol, console::plain(model))};
 }
 
-/// Advises a cheaper model for a nearly rigid droplet; empty for others.
+/// Advises a cheaper model for a nearly rigid droplet; empty for other droplets.
 std::string advice_of(const Scales& scales) {
   if (!(scales.line_tension > nearly_rigid_tension)) return "";
   return fmt::format(
@@ -151,7 +151,7 @@ std::string advice_of(const Scales& scales) {
       console::plain(scales.wall_stiffness), console::plain(nearly_rigid_tension));
 }
 
-/// Rounds all numbers, which are results of conversions, to twelve digits: 30, not 29.999999999999996.
+/// Rounds all numbers to twelve digits, because they are results of conversions: 30, not 29.999999999999996.
 Json rounded(Json document) {
   for (Json& value : document)
     if (value.is_structured())

@@ -56,7 +56,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
           "droplet will come to rest")
       .option("droplet",
               "replay: path of a daughter, as in the table of droplets; the file's lengths and times are in "
-              "units of this\ndaughter, whose diameter and birth are attributes of the file")
+              "units of this\ndaughter; its diameter and birth are attributes of the file")
       .option("output", "HDF5 file to create")
       .option("lab",
               "file that describes the laboratory, see clogfit units; determines terminal-speed and "
@@ -90,8 +90,8 @@ std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const 
   return {name.string() + ".mp4", name.string() + ".gif"};
 }
 
-/// Refuses options that name the same file. The files are written one after the other, so two equal names
-/// would otherwise be noticed only after the run.
+/// Refuses options that name the same file. The files are written one after the other, so a user would notice
+/// two equal names only after the run.
 void refuse_same_files(const cli::CommandLine& line) {
   std::map<std::filesystem::path, std::string> options;
   for (const std::string option : {"output", "write-obstacles", "frames"})
@@ -133,7 +133,7 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
   return options;
 }
 
-/// Systems whose runs can be written to a file and filmed.
+/// Systems with runs that can be written to a file and filmed.
 const std::map<std::string, int (*)(cli::CommandLine&)>& followed_systems() {
   static const std::map<std::string, int (*)(cli::CommandLine&)> systems = {
       {"array", clogrun_array}, {"channel", clogrun_channel}, {"replay", clogrun_replay}};

@@ -28,7 +28,7 @@ void refuse_unwritable_files(const cli::CommandLine& line) {
   if (line.has("write-obstacles")) store::refuse_unwritable(line.get("write-obstacles"));
 }
 
-/// Follows a run and writes its trajectory, after all errors of the user have been found.
+/// Follows a run and writes its trajectory. All errors of the user have been found before.
 /// @param config  printed by --dry-run
 /// @param origin  of the trajectory
 /// @param begin  called before the first step; not called if there is nothing to run

@@ -64,7 +64,7 @@ double precision(const cli::CommandLine& line) {
   try {
     number = sweep::to_number(text) / (is_percent ? 100 : 1);
   } catch (const Error&) {
-    // reported below, with the option's name
+    // the code below reports it with the option's name
   }
   if (number >= 0.001 && number < 1) return number;
   throw Error("invalid --until-precision=" + line.get("until-precision") +
@@ -103,7 +103,7 @@ void add_plan_options(cli::CommandLine& line) {
   }
 }
 
-/// Refuses a suffix of another format, because a table is an HDF5 file, whatever its name is.
+/// Refuses the suffix of another format, because the table is always an HDF5 file.
 void refuse_other_format(const cli::CommandLine& line) {
   if (!line.has("output")) return;
   const std::string name = line.get("output");
@@ -115,8 +115,8 @@ void refuse_other_format(const cli::CommandLine& line) {
                       name, name.substr(0, name.size() - std::string(ending).size())));
 }
 
-/// --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest unused seeds.
-/// So a killed sweep gets the same seeds again.
+/// Implements --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest
+/// unused seeds. So a killed sweep gets the same seeds again.
 void fill_seeds(cli::CommandLine& line) {
   if (!line.has("seeds-per-set")) return;
   for (const char* other : {"until-precision", "shard"})

@@ -15,7 +15,7 @@
 namespace clog::programs {
 namespace {
 
-/// A run that diverged went an unknown distance.
+/// The distance of a run that diverged is unknown.
 std::string outcome(const sweep::RunRow& row) {
   const std::string status(name(row.status));
   return std::isfinite(row.distance) ? fmt::format("{}, distance {:.17g}", status, row.distance) : status;

@@ -75,7 +75,7 @@ int follow(const std::string& path) {
   }
 }
 
-/// The law that scaled a measured speed to the droplets, if one did.
+/// The law that scaled a measured speed to the droplets; empty if the speed was not scaled.
 std::string law_of_speed(const Status& status) {
   if (status.groups.empty()) return "";
   const RunParameters& run = status.groups.front().first_row.parameters;

@@ -16,12 +16,13 @@ constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 double area_of(const Member& member) { return member.diameter * member.diameter; }
 
-/// A droplet that did not break up: how far it and those from which it descends went, and its end.
+/// A droplet that did not break up: its end, and the largest distance that it or one of its ancestors
+/// reached.
 struct Leaf {
   const Member* member;
   double reach;  ///< [sigma]
 
-  /// Whether it is known that the droplet goes no farther.
+  /// Whether the droplet certainly goes no farther.
   bool has_stopped() const {
     return member->status == MemberEnd::clogged || member->status == MemberEnd::small;
   }
@@ -34,8 +35,8 @@ class Tree {
     for (const Member& member : members) members_.emplace(member.path, &member);
   }
 
-  /// Calls visit() for each droplet that passes the line first, with true, and for each droplet that ends
-  /// before it, with false.
+  /// Calls visit(member, true) for each droplet that is the first of its line of descent to pass the line.
+  /// Calls visit(member, false) for each droplet that ends before the line.
   template <class Visit>
   void at_line(double distance, const Visit& visit, const std::string& path = "") const {
     const auto found = members_.find(path);
@@ -94,8 +95,9 @@ std::vector<double> lines_up_to(double farthest) {
   return lines;
 }
 
-/// Product-limit estimates at the lines. @param leaves  of all families, in the order of their reach; @param
-/// times  how often each family counts
+/// Product-limit estimates at the lines.
+/// @param leaves  of all families
+/// @param times  number of times that each family counts
 class ProductLimit {
  public:
   ProductLimit(const std::vector<std::vector<Leaf>>& leaves) {
@@ -131,7 +133,7 @@ class ProductLimit {
   std::vector<Step> steps_;
 };
 
-/// Percentiles of resampled ancestors; NaN for a single ancestor, and if all resamples give one value.
+/// Percentiles of resampled ancestors. NaN for a single ancestor, and if all resamples give one value.
 void set_intervals(const ProductLimit& estimator, std::size_t num_families, double confidence,
                    const std::vector<double>& distances, std::vector<FamilyLine>& lines) {
   constexpr int num_resamples = 2000;

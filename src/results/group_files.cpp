@@ -170,7 +170,8 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
                    {"lists", listed_columns(provenance)},
                    {"sweep", origin},
                    {"groups", groups_json(groups)}};
-  // If all groups have the same scale, the document has it once, otherwise each group has its own.
+  // If all groups have the same scale, the document contains it once. Otherwise each group has a separate
+  // scale.
   for (const Group& group : groups)
     if (const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory)
       document["laboratories"][own->check_sum()] = console::printable(own->text());

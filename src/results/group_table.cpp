@@ -62,10 +62,10 @@ Value without_round_off(const Value& value) {
 std::string rounded_text(const Group& group, const std::vector<Group>& groups, const sweep::Column& column,
                          int digits = few_digits) {
   const sweep::RunRow& row = group.first_row;
-  if (column.name == "laboratory")
+  if (column.holds_text())
     if (std::string label = laboratory_label(group, groups); !label.empty()) return label;
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
-  if (column.name == "obstacles" && own && !own->source().empty())
+  if (column.holds_file() && own && !own->source().empty())
     return console::printable(std::filesystem::path(own->source()).filename().string());
   return short_text(without_round_off(column.get(row)), digits);
 }
@@ -109,7 +109,7 @@ bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const
 bool lacks_as_model(const sweep::Column& column, const sweep::RunRow& row) {
   RunParameters of_other_model = row.parameters;
   of_other_model.model = row.parameters.model == Model::dp ? Model::sp : Model::dp;
-  return !has_parameter(column, row.parameters) && has_parameter(column, of_other_model);
+  return !column.applies_to(row.parameters) && column.applies_to(of_other_model);
 }
 
 /// A group with the column's value if one model alone has this parameter, with the same value in all of its
@@ -177,9 +177,7 @@ std::map<std::string, std::vector<std::string>> shared_words(const std::vector<G
     if (usual.empty() && shared == SharedParameters::unusual) usual = usual_parameters(row);
     const Value value = column.get(row);
     const std::string text = sweep::text_of(value);
-    const bool tells_all =
-        column.name == "model" || (column.name == "preset" && text != sweep::find_key("preset").default_text);
-    if (text.empty() || text == "none" || !(tells_all || usual.empty() || value != usual[i])) continue;
+    if (text.empty() || text == "none" || !(usual.empty() || value != usual[i])) continue;
     words[varies[i] ? name(row.parameters.model) : ""].push_back(
         fmt::format("{}={}{}", column.name, rounded_text(*group, groups, column), star_of(column, row)));
     named[i] = true;
@@ -225,7 +223,7 @@ ParameterColumns parameter_columns(const std::vector<Group>& groups, const std::
     };
     if (columns.droplets.empty() || !is_determined_by(groups, cell, droplet_of))
       columns.others.push_back({column.name, cell});
-    else if (column.name != "laboratory")
+    else if (!column.holds_text())
       columns.following.push_back({column.name, cell});
   }
   return columns;

@@ -83,7 +83,7 @@ std::string text_of(const char (&from)[size]) {
   return {from, std::find(from, from + size, '\0')};
 }
 
-/// Nullopt if a word is not one of ours.
+/// Nullopt if a word is unknown.
 std::optional<Member> member_of(const Line& line) {
   const auto status = meant_by<MemberEnd>(text_of(line.status));
   const auto mechanism = meant_by<ClogMechanism>(text_of(line.mechanism));
@@ -101,7 +101,7 @@ std::string check_sum_of(std::span<const Line> lines) {
   return std::to_string(check_sum(std::as_bytes(lines)));
 }
 
-/// The lines as they were written; nullopt if they are not.
+/// The lines of the table; nullopt if they are not as they were written.
 std::optional<std::vector<Line>> read_lines(hid_t file) {
   const Dataset table(H5Dopen2(file, droplets_name, H5P_DEFAULT));
   if (!table.valid()) return std::nullopt;

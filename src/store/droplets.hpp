@@ -22,8 +22,8 @@ struct StoredFamily {
 /// Writes no table if there is no family. @throws LibraryError
 void write_droplets(hid_t file, std::span<const StoredFamily> families);
 
-/// Gives the rows their families. Appends a sentence to `damage` if the table is not as it was written; then
-/// no row gets a family.
+/// Assigns the families to the rows. If the table is not as it was written, appends a sentence to `damage`,
+/// and assigns no family.
 void read_droplets(hid_t file, std::vector<sweep::RunRow>& rows, std::vector<std::string>& damage);
 
 }  // namespace clog::store

@@ -11,7 +11,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/sweep/keys.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
@@ -133,9 +135,17 @@ Column parameter_column(const Parameter& parameter) {
           .size = size,
           .parameter = &parameter,
           .shapes_array = parameter.shapes_array,
+          .scope = parameter.scope,
           .get = [&parameter](const RunRow& row) { return value_of(parameter, row); },
           .set = [&parameter](RunRow& row, const Value& value) { set_parameter(parameter, row, value); },
           .set_unknown = [&parameter](RunRow& row) { set_parameter(parameter, row, parameter.before); }};
+}
+
+/// Every group names its model.
+Column model_column(const Parameter& model) {
+  Column column = parameter_column(model);
+  column.usual = [](const RunRow&) { return Value(); };
+  return column;
 }
 
 /// How the array was filled: layout and density in one word.
@@ -191,6 +201,31 @@ Column density_column() {
     take(value, row.obstacle_density);
     if (row.parameters.obstacles.density.per_area) row.parameters.obstacles.density = row.obstacle_density;
   };
+  column.compared = [](const RunRow& row) {
+    const ObstacleParameters& obstacles = row.parameters.obstacles;
+    const bool is_chosen =
+        obstacles.layout == ObstacleLayout::random && (obstacles.density.per_area || obstacles.density.share);
+    return is_chosen ? outside(row.obstacle_density) : Value();
+  };
+  // The default is a number per area. A share of the saturated density is another number for each gap.
+  column.usual = [](const RunRow& row) -> Value {
+    if (!row.parameters.obstacles.density.per_area) return outside(row.obstacle_density);
+    RunParameters run = row.parameters;
+    run.obstacles.density = ObstacleParameters().density;
+    return outside(describe(resolve(run)).obstacle_density);
+  };
+  return column;
+}
+
+/// Allows any word: presets of another version may have other names.
+Column preset_column() {
+  Column column = member(
+      "preset", &RunRow::preset, ColumnRole::parameter, "",
+      "preset with the run's values of the interface's keys; custom: no preset has these values; none: "
+      "soft disk",
+      16);
+  column.scope = parameter("perimeter-spring").scope;
+  column.usual = [](const RunRow&) -> Value { return find_key("preset").default_text; };
   return column;
 }
 
@@ -230,12 +265,7 @@ std::vector<Column> columns_of_dwells() {
 std::vector<Column> columns_before_dwells() {
   using enum ColumnRole;
   return {
-      // Allows any word: presets of another version may have other names.
-      member(
-          "preset", &RunRow::preset, parameter, "",
-          "preset with the run's values of the interface's keys; custom: no preset has these values; none: "
-          "soft disk",
-          16),
+      preset_column(),
       member("model_version", &RunRow::model_version, parameter, "",
              "version of the model; versions give different results for the same parameters"),
       member("status", &RunRow::status, result, "",
@@ -404,8 +434,9 @@ std::vector<Column> make_columns() {
   // The columns `model` and `obstacle_filling` come first, because they decide which other parameters a run
   // has.
   for (const Parameter& one : parameter_schema()) {
-    if (one.has_own_column) all.push_back(parameter_column(one));
-    if (one.key == std::string_view("model")) all.push_back(filling_column());
+    const bool is_model = one.key == std::string_view("model");
+    if (one.has_own_column) all.push_back(is_model ? model_column(one) : parameter_column(one));
+    if (is_model) all.push_back(filling_column());
   }
   all.push_back(density_column());
   for (const auto& columns_of : {columns_before_dwells, columns_of_dwells, columns_after_dwells})

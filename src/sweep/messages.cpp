@@ -10,7 +10,8 @@
 namespace clog::sweep {
 namespace {
 
-/// The first number of a family. No snapshot begins with it. Change it whenever the bytes of a family change.
+/// The first number of a family's bytes. No snapshot begins with it. Change it whenever the bytes of a family
+/// change.
 constexpr std::uint64_t family_mark = 0x636c6f676d000001;
 
 }  // namespace

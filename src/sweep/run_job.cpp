@@ -34,8 +34,8 @@ RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> 
       arrays_(std::move(arrays)),
       row_(begun_row(run_parameters_, task)) {}
 
-/// Restores the run from the snapshot, if a run with these parameters can have written it. Otherwise, for
-/// instance if another version has written the snapshot, the run restarts, with the same result.
+/// Restores the run from the snapshot, if a run with these parameters can have written it. Otherwise the run
+/// restarts, with the same result. This happens, for instance, if another version has written the snapshot.
 FamilyRun RunJob::start() {
   const std::shared_ptr<const ObstacleArray> obstacles = arrays_->get(run_parameters_);
   if (!snapshot_.empty()) try {
@@ -66,7 +66,7 @@ bool RunJob::advance() {
     record(failure, row_);
     run_.reset();
   }
-  // Clocks of simulated time, and of some virtual machines, may step back.
+  // Clocks of simulated time, and of some virtual machines, may jump back.
   wall_seconds_ += std::max(0.0, std::chrono::duration<double>(Clock::now() - begin).count());
   processor_seconds_ += std::max(0.0, processor_seconds() - processor_begin);
   return over_;

@@ -114,8 +114,8 @@ const Settings::Entries& Settings::entries() const {
   return all_;
 }
 
-/// The given texts, those that follow from them for other keys, and the defaults. User-supplied circles and
-/// keys of a channel set the layout. The preset sets its keys. If nothing is random, there is one seed.
+/// The given texts, the texts of other keys that follow from these, and the defaults. User-supplied circles
+/// and keys of a channel set the layout. The preset sets its keys. If nothing is random, there is one seed.
 Settings::Entries Settings::resolved() const {
   static const Entries defaults = [] {
     Entries entries;
@@ -198,8 +198,8 @@ std::map<std::string, std::vector<std::string>> Settings::all_values() const {
   return all;
 }
 
-/// Keys that nobody has given and whose texts differ between branches: a config that gave them one text would
-/// contradict the branches.
+/// Keys that are not given and that have different texts in different branches. If a config gave such a key
+/// one text, this text would contradict the branches.
 std::set<std::string> Settings::keys_that_follow() const {
   std::set<std::string> following;
   visit_branches([&](const Settings& branch, std::int64_t) {
@@ -208,7 +208,7 @@ std::set<std::string> Settings::keys_that_follow() const {
       if (!branch.given_[i] && !given_[i] && now[i] != entries()[i] && now[i]->text != entries()[i]->text)
         following.insert(keys()[i].name);
   });
-  if (following.contains(layout_key))  // the keys of a channel would set the layout
+  if (following.contains(layout_key))  // if stored, the keys of a channel would set the layout
     for (const Key& key : keys())
       if (is_of_channel(key) && !is_given(key.name)) following.insert(key.name);
   return following;

@@ -43,16 +43,16 @@ class Handbook(Installation):
 
     def test_man_pages_have_every_option_with_its_default_and_no_other(self):
         for program, commands in COMMANDS.items():
-            told = re.findall(r"^\.B (--[^\n]+)\n(.*?)(?=^\.)", self.man_page(program, 1), re.MULTILINE | re.DOTALL)
+            printed = re.findall(r"^\.B (--[^\n]+)\n(.*?)(?=^\.)", self.man_page(program, 1), re.MULTILINE | re.DOTALL)
             helped = self.called(program, "--help").split("\nKeys")[0]
             for option, default in re.findall(r"^  (?:-\w \[ )?(--[a-z][a-z-]*)(?: \])?(?: arg \(=([^)]*)\))?", helped,
                                               re.MULTILINE):
                 words = f"(default: {default})" if default else ""
-                is_told = any(option in re.findall(r"--[a-z-]+", options) and words in meaning
-                              for options, meaning in told)
-                self.assertTrue(is_told or option in POSITIONAL, f"{program} {option} {words}")
+                is_named = any(option in re.findall(r"--[a-z-]+", options) and words in meaning
+                              for options, meaning in printed)
+                self.assertTrue(is_named or option in POSITIONAL, f"{program} {option} {words}")
             known = helped + "".join(self.called(program, command, "--help") for command in commands)
-            for option in re.findall(r"--[a-z-]+", " ".join(options for options, _ in told)):
+            for option in re.findall(r"--[a-z-]+", " ".join(options for options, _ in printed)):
                 self.assertRegex(known, rf"(?m)^  .*{option}\b")
 
     def test_man_pages_have_what_belongs_to_one_and_lead_to_others_that_are_there(self):

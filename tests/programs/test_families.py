@@ -1,4 +1,4 @@
-"""Tests droplets that break up and go on as daughters, from the sweep to its pictures."""
+"""Tests droplets that break up and continue as daughters, from the sweep to its pictures."""
 
 import json
 import os
@@ -10,14 +10,12 @@ import numpy as np
 import pandas
 import stored_rows
 from drawing import Analysis
-from support import BIN, FAMILIES, TIMING, SweepTest, shared_sweep, table
+from support import BIN, FAMILIES, SNAPSHOT_OF_A_DAUGHTER, TIMING, SweepTest, shared_sweep, table
 
 import clogsweep
 
-# Families whose runs take seconds, with snapshots of ancestors and of daughters
+# Families with runs that take seconds. They have snapshots of ancestors and of daughters.
 LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
-# The first bytes of such a snapshot (src/core/run/family.cpp)
-SNAPSHOT_OF_A_DAUGHTER = (0x636C6F6766000001).to_bytes(8, "little")
 
 
 def droplets(path):
@@ -80,8 +78,8 @@ class Families(SweepTest, Analysis):
         self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", 0).stdout)
         member = self.deepest()
         self.assertGreater(len(member.path), 1)
-        told = self.succeed("clogsweep", "replay", "s.h5", member.task, "--droplet", member.path).stdout
-        self.assertIn("the same bits", told)
+        printed = self.succeed("clogsweep", "replay", "s.h5", member.task, "--droplet", member.path).stdout
+        self.assertIn("the same bits", printed)
         paths = ", ".join(path for path in self.droplets[self.droplets.task == 0].path if path)
         for program, more in (("clogsweep", []), ("clogrun", ["--output", "r.h5"])):
             self.refuse(program, "replay", "s.h5", 0, "--droplet", "0000000", *more, words=[f"task 0 are {paths})"])
@@ -135,6 +133,26 @@ class Families(SweepTest, Analysis):
         self.succeed("clogsweep", "select", "s.h5", "seed>=2", "--output", "other.h5")
         self.succeed("clogsweep", "merge", "one.h5", "other.h5", "--output", "all.h5")
         self.check_equal("all.h5", "s.h5")
+
+    def test_families_merge_with_runs_that_end_at_break_up(self):
+        self.copy_sweep("end.h5", *(word for word in FAMILIES if not word.startswith("break-up=")))
+        self.succeed("clogsweep", "merge", "s.h5", "end.h5", "--output", "both.h5")
+        self.succeed("clogsweep", "verify", "both.h5")
+        rows = table(self.folder / "both.h5").set_index("task")
+        self.assertEqual(len(rows), 8)
+        merged = droplets(self.folder / "both.h5")
+        self.assertEqual(set(rows.break_up[merged.task]), {"daughters"})
+        for name, form in (("end", b"11"), ("daughters", b"12")):
+            self.succeed("clogsweep", "select", "both.h5", f"break_up={name}", "--output", f"{name}-again.h5")
+            with h5py.File(self.folder / f"{name}-again.h5") as file:
+                self.assertEqual([file.attrs["format_version"], "droplets" in file], [form, form == b"12"])
+        self.check_equal("daughters-again.h5", "s.h5")
+
+    def test_families_are_added_to_a_finished_sweep(self):
+        few = [*FAMILIES[:-1], "seeds=1..3", "--output", "few.h5"]
+        self.succeed("clogsweep", *few)
+        self.succeed("clogsweep", *few, "--seeds-per-set", 4)
+        pandas.testing.assert_frame_equal(droplets(self.folder / "few.h5"), self.droplets, check_exact=True)
 
     def test_killed_families_resume_bit_for_bit(self):
         sweep = [*LONG, "--report-seconds=0.1", "--output", "k.h5"]

@@ -19,8 +19,8 @@ Member member(const std::string& path, double diameter, double birth, double end
           .status = status};
 }
 
-/// Breaks at 15 into a half that clogs at 40 and two quarters, of which one is still moving at 70, and one is
-/// too small.
+/// A droplet that breaks at 15 into a half and two quarters. The half clogs at 40. One quarter is still
+/// moving at 70, and the other is too small.
 std::vector<Member> family() {
   const double half = std::sqrt(0.5), quarter = 0.5;
   return {member("", 1, 0, 15, MemberEnd::broken), member("0", half, 15, 40, MemberEnd::clogged),
@@ -46,12 +46,26 @@ TEST(Families, CountEachPartOfTheAreaOnce) {
   EXPECT_EQ(found.clogged.numbers[14], 1);  // 0.707
 }
 
+/// Nobody knows how far a droplet would have gone whose run failed.
+TEST(Families, CountTheAreaOfAFailedDaughterAsNotKnown) {
+  std::vector<Member> members = family();
+  members[1].status = MemberEnd::failed;  // the half that ends at 40
+  const std::vector<std::vector<Member>> families = {members};
+  const Families found = families_of(families, 0.95);
+  const FamilyLine& line = found.lines[2];  // at 50
+  EXPECT_EQ(line.clogged, 0);
+  EXPECT_NEAR(line.not_known, 0.5, 1e-15);
+  EXPECT_NEAR(line.passed.area + line.clogged + line.small + line.not_known, 1, 1e-15);
+  EXPECT_EQ(found.clogged.number, 0);
+  EXPECT_NEAR(line.passing, 0.75, 1e-15) << "a quarter of all was too small at 30";
+}
+
 TEST(Families, HaveNoLineBeyondTheFarthestDroplet) {
   const std::vector<std::vector<Member>> families = {{member("", 1, 0, 9, MemberEnd::flowing)}};
   EXPECT_TRUE(families_of(families, 0.95).lines.empty());
 }
 
-/// Without break-up, areas are 1, and the share that passes is the estimate of Kaplan and Meier.
+/// Without break-up, areas are 1, and the share that passes equals the estimate of Kaplan and Meier.
 TEST(Families, ThatDoNotBreakUpGiveTheProductLimitEstimate) {
   std::vector<std::vector<Member>> families;
   std::vector<fit::Observation> runs;

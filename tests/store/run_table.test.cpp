@@ -82,7 +82,7 @@ TEST_F(RunTableTest, GivesBackFamilies) {
 }
 
 TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
-  for (const int number : {0, 1, 200, 1000}) {  // each table replaces the table before
+  for (const int number : {0, 1, 200, 1000}) {  // each table replaces the previous table
     const std::vector<sweep::RunRow> rows = some_rows(number);
     publish(path(), rows, {{"version", "1.2.3"}, {"empty", ""}});
     const SweepFile file = read_sweep(path());
@@ -328,8 +328,8 @@ TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
       std::string damaged = content;
       damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << bit));
       write_text("damaged.h5", damaged);
-      // Some flipped bits do not change what is read: bits between digits and name, and bits that turn a
-      // lower-case letter of a hexadecimal number into upper case.
+      // Some flipped bits do not change the content: bits between digits and name, and bits that change the
+      // case of a letter in a hexadecimal number.
       try {
         EXPECT_EQ(read_sweep(path("damaged.h5")).provenance, read_sweep(path()).provenance)
             << byte << ' ' << bit;

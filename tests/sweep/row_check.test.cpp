@@ -56,7 +56,7 @@ const std::vector<Keys> sweeps = {
     {{"max-time", "200"}, {"model", "sp"}, {"wall-stiffness", "100"}, {"terminal-speed", "100"}},
 };
 
-/// The row of a stiff polygon that has clogged. So it has all results.
+/// The row of a stiff polygon that has clogged. It has all results.
 const RunRow& clogged() {
   static const RunRow row = row_of(sweeps.front());
   return row;
@@ -352,7 +352,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
   }
 }
 
-/// The final row of a run whose droplet rested twice and ended hanging over an obstacle.
+/// The final row of a run. The droplet rested twice and ended hanging over an obstacle.
 const RunRow& hanging() {
   static const RunRow row = [] {
     RunRow one = row_of({{"max-time", "1000"},
@@ -466,7 +466,7 @@ TEST(FarthestWay, IsHardlyMoreThanAFreeSoftDiskFalls) {
   RunRow row = describe(plan_of({{"model", "sp"}, {"wall-stiffness", "1"}}).task(0));
   row.parameters.obstacles.gap = std::nan("");
   row.time = 1000;
-  EXPECT_NEAR(farthest_way(row), 1.1 * row.parameters.drag.terminal_speed * row.time, 1e-12);
+  EXPECT_NEAR(farthest_distance(row), 1.1 * row.parameters.drag.terminal_speed * row.time, 1e-12);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(BegunRow, KnowsEveryResultThatIsKnownAtTheRelease) {
 }
 
 TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
-  // The obstacles are so close to each other that for some seeds there is no void near the centre of the box.
+  // The obstacles are so close together that some seeds give no void near the centre of the box.
   const Plan plan(settings_of({{"obstacle-diameter", "3"},
                                {"obstacle-gap", "0.06"},
                                {"obstacle-density", "saturated"},
@@ -87,9 +87,9 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   EXPECT_GT(num_failed, 0);
 }
 
-/// A snapshot of the task in which `change` has changed the numbers of the dwells. The numbers are a length,
-/// a distance and a beginning for each of eight dwells, and after them the smallest duration of dwells that
-/// are known.
+/// A snapshot of the task in which `change` has changed the numbers of the dwells. These numbers are a
+/// length, a distance and a beginning for each of eight dwells. The last number is the smallest duration of
+/// dwells that are known.
 template <class Change>
 std::vector<std::byte> changed_snapshot(const RunParameters& run, Change change) {
   RunJob job(run, 0);

@@ -23,7 +23,7 @@ def body() -> int:
     parser = Parser(__doc__)
     parser.add_argument("sweeps", type=pathlib.Path, nargs="+",
                         help="files of clogsweep --output; each further file is compared with the first")
-    parser.add_argument("--by", help="key whose values are compared with each other")
+    parser.add_argument("--by", help="key; its values are compared with each other")
     parser.add_argument("--within",
                         help="the two clogs of a pair count as one place if they are within this distance [sigma]")
     parser.add_argument("--confidence", help="confidence level of the intervals (0.95)")

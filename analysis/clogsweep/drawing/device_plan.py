@@ -57,8 +57,8 @@ def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> No
 
 
 def rings_among(circles: Numbers) -> list[Numbers]:
-    """Closed chains of overlapping circles, as centres (n, 2). The space inside such a chain is drawn filled, because
-    no droplet can enter it."""
+    """Closed chains of overlapping circles, as centres (n, 2). The inside of such a chain is drawn filled, because no
+    droplet can enter it."""
     def overlap(i: int, j: int) -> bool:
         return bool(np.hypot(*(circles[i, :2] - circles[j, :2])) < max(circles[i, 2], circles[j, 2]) / 2)
 

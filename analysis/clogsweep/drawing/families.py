@@ -19,7 +19,7 @@ from .lengths import add_scale
 if TYPE_CHECKING:
     import pandas
 
-MOST_UNKNOWN = 0.1  # At the outlet, not more than this share of the area may be of unknown fate.
+MOST_UNKNOWN = 0.1  # Largest share of the area that may have an unknown fate at the outlet.
 END_COLOURS = {"clogged": style.COLOURS[1], "flowing": style.COLOURS[0], "passed": style.COLOURS[0],
                "small": style.COLOURS[3], "failed": style.COLOURS[6], "broken": "0.6"}
 END_WORDS = {"clogged": "clogged", "flowing": "still moving", "passed": "passed the exit",
@@ -80,10 +80,9 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
         if at_outlet:
             numbers = at_outlet["passed"]["numbers"]
             sizes.stairs(numbers, np.arange(len(numbers) + 1) * width, color=colour, linewidth=1.6, label=label)
+    known = sorted({line["distance"] for group in members for line in group["families"]["lines"]})
     for axes in (share, number):
-        axes.set_xscale("log")
-        axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
-        axes.xaxis.set_minor_formatter("")
+        style.logarithmic_abscissa(axes, known)
     share.set_ylim(0, 1.05)
     number.set_ylim(bottom=0)
     style.label(share, r"distance from the release $x/\sigma$", "share of the area that passes")

@@ -1,4 +1,5 @@
-"""Makes a film of a family: all droplets into which one breaks up, in the array and the units of the first one."""
+"""Makes a film of a family: a droplet and all droplets into which it breaks up, in the array and in the units of the
+first droplet."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
     surroundings.draw_guides(axes)
     axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
     draw_outlines(axes, run, trajectory.along_the_way(run.polygons, num_outlines), origin)
-    # The colour bar is as high as the axes, whose shape is fixed. By default it would be as high as the figure.
+    # The colour bar is as high as the axes, which have a fixed shape. By default it would be as high as the figure.
     axes.figure.colorbar(time_scale(run), cax=axes.inset_axes((1.01, 0, 0.02, 1)), label=r"$t/t_0$")
 
 

@@ -18,7 +18,7 @@ AXES = {
     "speed": r"mean speed $\langle v_g\rangle/v_t$",
     "slope": r"lateral displacement per distance",
     "h": r"position relative to the orifice $h/\sigma$",
-    "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
+    "shape": r"shape parameter $A = P^2/(4\pi a)$",
     "profile": r"speed $v_g/v_t$",
 }
 

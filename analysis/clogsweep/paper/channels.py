@@ -194,7 +194,7 @@ def two_orifices(runner: Runner) -> Plate:
         surroundings.draw_droplet(inset, run, frame, run.middle)
         surroundings.frame_limits(inset, (-0.8, -0.8), (0.8, 0.8))
         inset.set_xticks([]), inset.set_yticks([])
-        inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
+        inset.set_xlabel(rf"$A_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
         data += [*profile_rows(run, f"w={orifice}"), extremes(run, f"w={orifice}")]
     for pair, path in zip(panels, runner.profiles):
         for axes, column in zip(pair, "Av"):

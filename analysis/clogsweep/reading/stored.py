@@ -47,8 +47,8 @@ def is_sealed(path: AnyPath) -> bool:
 
 
 def text(value: object) -> str:
-    """A word of a table, or lines of an attribute, with escapes for unprintable bytes, because a file from elsewhere
-    may contain any bytes."""
+    """A word of a table, or lines of an attribute. Unprintable bytes are escaped, because a file from elsewhere may
+    contain any bytes."""
     return printable(value.decode(errors="surrogateescape") if isinstance(value, bytes) else value, "\n\t")
 
 
@@ -103,7 +103,7 @@ def changed_run(path: AnyPath) -> UserError:
 
 
 def is_distance_table(path: AnyPath) -> bool:
-    """Whether this is the name of a text table, not of a sweep's file, as clogfit decides it."""
+    """Whether this is the name of a text table rather than of a sweep's file. The rule is that of clogfit."""
     return os.fspath(path).lower().endswith((".csv", ".tsv", ".txt", ".dat"))
 
 

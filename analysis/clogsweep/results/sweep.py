@@ -42,7 +42,7 @@ class Sweep:
     - `droplets`: table with a row for each member of a family, with break-up=daughters
     - `attributes`: version, commit, config, command line
 
-    All other methods run the programs on the file as it is now.
+    All other methods run the programs on the present file.
     """
 
     def __init__(self, path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> None:
@@ -123,7 +123,7 @@ class Sweep:
         """Draws user-supplied circles with the places where droplets were released, passed and clogged, and the paths
         of droplets. Each of up to six parameter sets has a panel.
 
-        @param ways  number of runs of each panel whose paths are drawn as lines
+        @param ways  number of runs of each panel with a path that is drawn as a line
         @param map  number of runs in the map of each panel; all of them are replayed
         @param jobs  number of simultaneous replays
         @throws UserError  if the sweep has no user-supplied circles, or circles of several devices

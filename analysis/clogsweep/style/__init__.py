@@ -49,8 +49,8 @@ OBSTACLE = "0.72"
 NOTE_SIZE = 8
 CURVE = "curve "  # The name (`gid`) of a curve's artists begins with this word. The curve's label follows.
 DROPLET = "#D55E00"
-# An arrow that rises from a foot. The foot is at the lower bound, so the arrow fills the upper half of a marker's
-# square.
+# An arrow that rises from a foot. The foot is at the lower bound, in the middle of the marker's square, so the arrow
+# fills the upper half of this square.
 LOWER_BOUND = Path([(-0.25, 0), (0.25, 0), (0, 0), (0, 1), (-0.25, 0.6), (0, 1), (0.25, 0.6)], [1, 2, 1, 2, 1, 2, 2])
 
 
@@ -197,8 +197,8 @@ def logarithmic_margin(values: Collection[float]) -> float:
 
 def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
     """The factor by which the points of a curve are shifted on logarithmic abscissae, so that the bars of different
-    curves can be distinguished. The shift is a fraction of the axis. The shift is smaller if neighbouring values or the
-    frame are near."""
+    curves can be distinguished. The shift is a fraction of the axis. It is smaller if neighbouring values or the frame
+    are near."""
     ordered = sorted(set(values))
     outermost = max(num_curves - 1, 1) / 2
     nearest = min((b / a for a, b in zip(ordered, ordered[1:])), default=2.0)
@@ -247,8 +247,9 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
 
 
 def logarithmic_ordinate(axes: Axes) -> None:
-    """Labels a logarithmic ordinate with plain numbers if it has fewer than two decades, because there would be too few
-    powers of ten. Labels are at 1, 2 and 5, or at every tick if the ordinate has less than a factor of five."""
+    """Labels a logarithmic ordinate with plain numbers if it has fewer than two decades, because there are too few
+    powers of ten for labels. Labels are at 1, 2 and 5, or at every tick if the ordinate has less than a factor of
+    five."""
     axes.set_yscale("log")
     axis = axes.yaxis
     usual = axis.get_major_formatter()

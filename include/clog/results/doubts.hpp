@@ -69,15 +69,15 @@ inline constexpr DoubtText doubt_texts[] = {
      "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
      "cross themselves or obstacles (handbook, How far to trust it)"}};
 const DoubtText& text_of(Doubt doubt);
-/// The letters, the words with a space between them, and a legend: a blank line and a line for each different
-/// doubt, in the order of doubt_texts; empty without doubts.
+/// These functions return the letters, the words with a space between them, and a legend. The legend is a
+/// blank line and a line for each different doubt, in the order of doubt_texts; it is empty without doubts.
 std::string letters_of(const std::vector<Doubt>& doubts);
 std::string words_of(const std::vector<Doubt>& doubts);
 std::string legend_of(const std::vector<Doubt>& doubts);
 
-/// All doubts but Doubt::not_exponential, which needs all groups.
+/// All doubts except Doubt::not_exponential, which depends on all groups.
 std::vector<Doubt> doubts_about(const Group& group);
-/// Adds Doubt::not_exponential. The same runs in several laboratories are one test.
+/// Adds Doubt::not_exponential. Copies of runs in several laboratories count as one test.
 void doubt_exponentiality(std::vector<Group>& groups);
 
 }  // namespace clog::results

@@ -15,9 +15,6 @@ std::vector<Value> usual_parameters(const sweep::RunRow& row);
 /// one that the row's preset sets.
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
 
-/// Whether the run has a value in this column. Runs lack parameters of the other model, or of other layouts.
-bool has_parameter(const sweep::Column& column, const RunParameters& run);
-
 /// The value by which a column separates curves and comparisons. It is unset if the row's value is automatic
 /// or follows from the array. For springs to the rest length, it is the ratio K_l/Gamma of
 /// `perimeter-stiffness-ratio`.

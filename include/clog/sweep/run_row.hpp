@@ -83,6 +83,9 @@ inline bool is_final(const RunRow& row) {
 /// check that found the crossing, at most 2048 steps too far [sigma].
 std::optional<double> observed_distance(const RunRow& row);
 
+/// Whether the row names a preset of some version.
+inline bool has_named_preset(const RunRow& row) { return row.preset != "none" && row.preset != "custom"; }
+
 /// Cost of a run so far [s]: its processor time, or its wall-clock time if that is unknown.
 inline double cost_seconds(const RunRow& row) {
   return is_known(row.processor_seconds) ? row.processor_seconds : row.wall_seconds;

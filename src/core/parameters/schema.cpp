@@ -185,6 +185,7 @@ struct Facts {
   std::vector<std::string> words = {};  ///< the allowed words, if not all words of the type
   ParameterValue elsewhere = {};
   ParameterValue before = {};
+  ParameterValue (*compared)(const RunParameters&) = nullptr;
 };
 
 /// @param Member  a function without state, from the parameters of a run (const or not) to a reference to the
@@ -207,6 +208,7 @@ Parameter entry(const char* key, Member, const Facts& facts) {
       .shapes_array = facts.shapes_array,
       .elsewhere = facts.elsewhere,
       .before = facts.before,
+      .compared = facts.compared,
       .kind = Outside<T>::kind,
       .words = facts.words.empty() ? Outside<T>::words() : facts.words,
       .get = [](const RunParameters& run) { return Outside<T>::get(Member{}(run)); },
@@ -217,6 +219,16 @@ Bound from(double value, const char* reason, const char* remedy) { return {value
 Bound to(double value, const char* reason, const char* remedy) { return {value, true, reason, remedy}; }
 Bound above(double value, const char* reason, const char* remedy) { return {value, false, reason, remedy}; }
 Bound below(double value, const char* reason, const char* remedy) { return {value, false, reason, remedy}; }
+
+/// K_l/Gamma, to nine digits because the ratio has round-off, for springs whose automatic stiffness is
+/// proportional to Gamma; unset for other springs.
+ParameterValue ratio_to_line_tension(const RunParameters& run) {
+  const DpParameters& dp = run.dp;
+  if (dp.perimeter_spring != PerimeterSpring::rest || !dp.perimeter_stiffness || dp.line_tension <= 0)
+    return {};
+  constexpr double figures = 1e9;
+  return std::round(figures * *dp.perimeter_stiffness / dp.line_tension) / figures;
+}
 
 const Bound positive = above(0, "must be positive", "use a value above 0");
 const Bound not_negative = from(0, "must not be negative", "use 0 or more");
@@ -610,7 +622,8 @@ std::vector<Parameter> interface_entries() {
              .scope = &polygons,
              .automatic_in = &polygons,
              .range = {not_negative, {}},
-             .words = {"auto"}}),
+             .words = {"auto"},
+             .compared = ratio_to_line_tension}),
       entry("perimeter-stiffness-ratio", [](auto& run) -> auto& { return run.dp.perimeter_stiffness_ratio; },
             {.column = "perimeter_stiffness",
              .symbol = R"(K_l/\Gamma)",

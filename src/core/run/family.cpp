@@ -75,7 +75,7 @@ std::vector<Member> restore_members(ByteReader& bytes) {
 
 namespace {
 
-/// The frame in units that are larger by a factor, with the period of these units.
+/// The frame with its origin multiplied by `factor`, for a change of units. @param period  in the new units
 LocalFrame scaled(const LocalFrame& frame, double factor, const Period& period) {
   LocalFrame scaled = frame;
   scaled.period = {period.along(), period.across()};
@@ -121,14 +121,14 @@ void FamilyRun::Birth::save(ByteWriter& bytes) const {
   put(bytes, member);
   state.save(bytes);
   bytes.put(num_vertices);
-  bytes.put(way);
+  bytes.put(passing_distance);
 }
 
 void FamilyRun::Birth::restore(ByteReader& bytes) {
   get(bytes, member);
   state.restore(bytes);
   bytes.get(num_vertices);
-  bytes.get(way);
+  bytes.get(passing_distance);
   const bool is_placed = member.diameter > 0 && member.diameter <= 1 && member.birth.time >= 0 &&
                          std::isfinite(member.birth.time) && member.path.size() <= longest_path;
   const bool is_followed = member.status != MemberEnd::small;
@@ -162,8 +162,8 @@ bool FamilyRun::advance(int num_checks) {
   return !begin_next();
 }
 
-/// Whether some work for the present daughter succeeds. An exception ends the daughter, but not its family;
-/// without memory, the whole family fails, and may be run again.
+/// Whether some work for the present daughter succeeds. An exception ends the daughter, but not its family.
+/// If memory runs out, the whole family fails, and may be run again.
 template <class Work>
 bool FamilyRun::succeeds(const Work& work) {
   try {
@@ -180,7 +180,7 @@ bool FamilyRun::succeeds(const Work& work) {
   }
 }
 
-/// The present member's displacement and time as those of the family.
+/// The present member's displacement and time, as displacement and time of the family.
 FamilyPoint FamilyRun::point_of(const Eigen::Array2d& displacement, double time) const {
   const double d = present_.diameter;
   return {.distance = present_.birth.distance + d * displacement[0],
@@ -188,7 +188,7 @@ FamilyPoint FamilyRun::point_of(const Eigen::Array2d& displacement, double time)
           .time = present_.birth.time + std::sqrt(d) * time};
 }
 
-/// Where a member was last whole; how far across the flow is not known.
+/// The place where a member was last intact; its lateral displacement is unknown.
 FamilyPoint FamilyRun::place_of_failure(const RunResult& result) const {
   return point_of({result.sound_distance, std::numeric_limits<double>::quiet_NaN()}, result.time);
 }
@@ -225,7 +225,7 @@ void FamilyRun::cut_present() {
     birth.num_vertices =
         std::max(fewest_vertices_of_a_daughter, static_cast<int>(std::ceil(part_shape.perimeter / edge)));
     const MovingPolygon spread = with_vertices(part, birth.num_vertices);
-    const double growth = present_.diameter / birth.member.diameter;  // of all lengths
+    const double growth = present_.diameter / birth.member.diameter;  // factor for all lengths
     Period period = obstacles_->period();
     for (double* length : {&period.box, &period.length, &period.beside}) *length /= birth.member.diameter;
     birth.state.position = growth * spread.position;
@@ -233,7 +233,8 @@ void FamilyRun::cut_present() {
     birth.state.frame = scaled(state.frame, growth, period);
     while (birth.state.recentre().any()) {
     }
-    birth.way = (ancestor_.way() - birth.member.birth.distance) / birth.member.diameter;
+    birth.passing_distance =
+        (ancestor_.passing_distance() - birth.member.birth.distance) / birth.member.diameter;
   }
   std::ranges::move(births, std::back_inserter(births_));
 }
@@ -252,7 +253,7 @@ std::optional<Member> FamilyRun::member(const std::string& path) && {
   return is_found() ? std::optional(members_.back()) : std::nullopt;
 }
 
-/// Whether the member is wanted, or one of those from which it descends.
+/// Whether the member is requested, or a requested member descends from it.
 bool FamilyRun::is_followed(const std::string& path) const { return !only_ || only_->starts_with(path); }
 
 /// Starts the next daughter. Returns whether there is one.
@@ -283,7 +284,7 @@ void FamilyRun::begin(const Birth& birth, std::span<const std::byte> snapshot) {
   daughter_ = snapshot.empty()
                   ? std::make_unique<DropletRun>(run, std::move(obstacles), birth.state)
                   : std::make_unique<DropletRun>(DropletRun::resume(run, std::move(obstacles), snapshot));
-  daughter_->set_way(birth.way);
+  daughter_->set_passing_distance(birth.passing_distance);
 }
 
 std::vector<std::byte> FamilyRun::snapshot() const {

@@ -38,7 +38,7 @@ void check_break_up(const RunParameters& run) {
           {gap_key});
 }
 
-/// Refuses what is not scaled to the units of a daughter.
+/// Refuses parameters that cannot be scaled to the units of a daughter.
 void check_daughters(const RunParameters& run) {
   if (run.model != Model::dp || run.dp.break_up == BreakUp::end) return;
   const auto refuse = [](const char* key, const std::string& why, const std::string& remedy) {

@@ -112,7 +112,7 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   }
 }
 
-/// On the contour of this oval, the distances from two points at +-a have the product b^2. For a < b <
+/// On the contour of this oval, the product of the distances from two points at +-a is b^2. For a < b <
 /// sqrt(2) a the oval is 2 sqrt(b^2 - a^2) wide in the middle. An edge of length l is a chord there. The
 /// distance of the chord from the contour is l^2/8 times the curvature of the contour.
 TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {

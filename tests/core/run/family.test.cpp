@@ -86,7 +86,7 @@ TEST(Family, BeginsWhereTheMotherEnds) {
   }
 }
 
-/// The ancestor of a family runs like a droplet whose break-up ends its run.
+/// The ancestor of a family has the same run as a droplet for which break-up ends the run.
 TEST(Family, HasTheAncestorOfARunThatEndsAtBreakUp) {
   RunParameters alone = soft_run(2);
   alone.dp.break_up = BreakUp::end;
@@ -97,7 +97,7 @@ TEST(Family, HasTheAncestorOfARunThatEndsAtBreakUp) {
   EXPECT_TRUE(single.members().empty());
 }
 
-/// No number is the speed of these daughters, so their runs cannot begin.
+/// The speed of these daughters is NaN, so their runs cannot begin.
 TEST(Family, OutlivesADaughterWhoseRunFails) {
   RunParameters run = soft_run(1);
   run.drag.speed_exponent = std::numeric_limits<double>::quiet_NaN();
@@ -110,6 +110,29 @@ TEST(Family, OutlivesADaughterWhoseRunFails) {
     EXPECT_EQ(member.end.distance, member.birth.distance);
     EXPECT_EQ(member.end.lateral, member.birth.lateral);
   }
+}
+
+/// Daughters that are much too fast begin, but do not stay whole. The ancestor's row is as without them, and
+/// the area of each family is that of its leaves.
+TEST(Family, OutlivesADaughterThatDiverges) {
+  RunParameters run = soft_run(1);
+  run.drag.speed_exponent = -20;
+  const FamilyRun family = finished(run);
+  EXPECT_EQ(family.result().status, RunStatus::broken);
+  EXPECT_EQ(family.result().distance, finished(soft_run(1)).result().distance);
+  int num_failed = 0;
+  double area = 0;
+  for (const Member& member : family.members()) {
+    if (member.status != MemberEnd::broken) area += member.diameter * member.diameter;
+    if (member.status != MemberEnd::failed) continue;
+    ++num_failed;
+    EXPECT_GT(member.end.time, member.birth.time);
+    EXPECT_TRUE(std::isfinite(member.end.distance));
+    EXPECT_TRUE(std::isnan(member.end.lateral));
+    EXPECT_EQ(member.mechanism, ClogMechanism::none);
+  }
+  EXPECT_GT(num_failed, 0);
+  EXPECT_NEAR(area, 1, 1e-13);
 }
 
 TEST(Family, RepeatsOneMember) {
@@ -173,7 +196,7 @@ TEST(Daughter, HasTheParametersOfItsSize) {
   EXPECT_EQ(daughter.dp.break_up_neck, ancestor.dp.break_up_neck / d);
   EXPECT_DOUBLE_EQ(*daughter.obstacles.density.per_area, *ancestor.obstacles.density.per_area * d * d);
   EXPECT_DOUBLE_EQ(daughter.max_time, 100 / std::sqrt(d));
-  // Speeds are in sqrt(sigma g): the same speed is larger in the units of a smaller droplet.
+  // Speeds are in sqrt(sigma g). So in the units of a smaller droplet, the same speed is a larger number.
   EXPECT_DOUBLE_EQ(daughter.drag.terminal_speed * std::sqrt(d), ancestor.drag.terminal_speed);
   RunParameters faster_if_large = ancestor;
   faster_if_large.drag.speed_exponent = 1;

@@ -75,6 +75,8 @@ struct Parameter {
   ParameterValue elsewhere;
   /// The value that the parameter has for all runs in files older than the parameter; unset if it is unknown.
   ParameterValue before;
+  /// The value by which runs are compared, unset for `get`; null: always `get`.
+  ParameterValue (*compared)(const RunParameters&);
 
   ValueKind kind;
   /// All values of a word; for a number, the words that select an automatic value.

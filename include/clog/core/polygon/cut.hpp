@@ -15,16 +15,16 @@ struct MovingPolygon {
 
 /// The two parts of a polygon on both sides of a neck.
 ///
-/// Both have the ends of the neck as vertices, so their areas add up to that of the whole, and the area
-/// centroid of the whole is the mean of theirs, weighted with the areas. The point of the neck on an edge
-/// moves with that edge. Both parts are then given one common velocity more, so that the mean velocities of
-/// their vertices, weighted with the areas, add up to the mean velocity of the whole: a droplet's mass is
-/// spread evenly over its vertices, and that of a part is proportional to its area.
+/// Both parts have the ends of the neck as vertices. So their areas add up to that of the whole, and the area
+/// centroid of the whole is the weighted mean of those of the parts, with the areas as weights. The end of
+/// the neck on an edge moves with that edge. One common velocity is then added to both parts, so that the
+/// mean velocities of their vertices, weighted with the areas, add up to the mean velocity of the whole. (A
+/// droplet's mass is spread evenly over its vertices, and the mass of a part is proportional to its area.)
 std::array<MovingPolygon, 2> cut(const MovingPolygon& whole, const Neck& neck);
 
-/// The polygon with `num_vertices` vertices at equal distances along its contour, the first of them at its
-/// first vertex. It is magnified about its area centroid, so that its area stays the same. The mean velocity
-/// of the vertices stays the same, too.
+/// The polygon with `num_vertices` vertices at equal distances along its contour. The first new vertex is at
+/// the first old one. The polygon is then magnified about its area centroid, so that its area stays the same.
+/// The mean velocity of the vertices stays the same, too.
 MovingPolygon with_vertices(const MovingPolygon& polygon, int num_vertices);
 
 }  // namespace clog

@@ -19,8 +19,8 @@
 
 namespace clog {
 
-/// How a member of a family ends: as the run of a single droplet, or `small`, smaller than smallest-daughter,
-/// and not followed.
+/// How a member of a family ends. Most ends are those of a single droplet's run. A `small` member is smaller
+/// than smallest-daughter and is not followed.
 enum class MemberEnd { clogged, broken, passed, flowing, failed, small };
 template <>
 struct Words<MemberEnd> {
@@ -47,8 +47,8 @@ struct Member {
   std::optional<ClogMechanism> mechanism = ClogMechanism::none;
 };
 
-/// Longest path of a member. Each break-up takes at least 2 % of the area, so no family comes near; the parts
-/// of a droplet with such a path are not followed.
+/// Longest path of a member. Each break-up takes at least 2 % of the area, so real families stay far below
+/// this limit. The parts of a droplet with such a path are not followed.
 inline constexpr std::size_t longest_path = 64;
 
 void save(const std::vector<Member>& members, ByteWriter& bytes);
@@ -58,24 +58,24 @@ std::vector<Member> restore_members(ByteReader& bytes);
 /// Smallest number of vertices of a daughter.
 inline constexpr int fewest_vertices_of_a_daughter = 32;
 
-/// The parameters of a daughter in its own units, in which it has the diameter 1: lengths are divided by its
+/// The parameters of a daughter in its own units, in which it has the diameter 1. Lengths are divided by its
 /// relative diameter d, times by sqrt(d), and Gamma by d^2, but Gamma is at most nearly_rigid_tension. The
-/// terminal speed of a droplet is proportional to its diameter to the power of speed-exponent n, so it is
-/// multiplied by d^(n - 1/2). The step and the stiffnesses are automatic.
+/// terminal speed of a droplet is proportional to its diameter to the power of speed-exponent n, so in these
+/// units it is multiplied by d^(n - 1/2). The step and the stiffnesses are automatic.
 /// @param ancestor  resolved
 /// @param time_left  from the birth until the ancestor's max-time [t0 of the ancestor]
 RunParameters daughter_parameters(const RunParameters& ancestor, double diameter, double time_left,
                                   int num_vertices);
 
-/// The same obstacles in the units of a daughter.
+/// The obstacles, converted to the units of a daughter.
 ObstacleArray obstacles_in_units_of(const ObstacleArray& obstacles, double diameter);
 
-/// A droplet, and, with break-up=daughters, all droplets into which it breaks up, which are run one after the
+/// A droplet, and with break-up=daughters all droplets into which it breaks up. They are run one after the
 /// other: the ancestor, then its daughters in the order in which they are found.
 ///
 /// A droplet that breaks up is cut along its neck. Each daughter takes its part of the interface, with the
-/// velocities there, and vertices at the mean distance of those of its mother. Daughters do not feel each
-/// other. A daughter whose run fails ends there, and the others go on.
+/// velocities of this part. Her vertices have the mean distance of those of her mother. Daughters do not feel
+/// each other. If the run of a daughter fails, the daughter ends there, and the runs of the others continue.
 class FamilyRun {
  public:
   FamilyRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
@@ -92,10 +92,11 @@ class FamilyRun {
   /// Empty before the first snapshot of the ancestor.
   std::vector<std::byte> snapshot() const;
   const DropletRun& ancestor() const { return ancestor_; }
-  /// For a run that has not been advanced, here and below: the run of one member at its birth, or nothing if
-  /// there is no such member, or it was not followed. Only those from which it descends are run.
+  /// Returns the run of one member at its birth. Returns nullopt if there is no such member, or if it was not
+  /// followed. Only the members from which it descends are run. This function and the next require a run that
+  /// has not been advanced.
   std::optional<DropletRun> at_birth(const std::string& path) &&;
-  /// One member that has ended, or nothing if there is none.
+  /// Returns one member that has ended; nullopt if there is no such member.
   std::optional<Member> member(const std::string& path) &&;
   /// The droplet that moves at present, and its member.
   const DropletRun& present() const { return daughter_ ? *daughter_ : ancestor_; }
@@ -107,7 +108,7 @@ class FamilyRun {
     Member member;
     DropletState state;  ///< in the daughter's units
     int num_vertices = 0;
-    double way = std::numeric_limits<double>::infinity();  ///< [sigma of the daughter]
+    double passing_distance = std::numeric_limits<double>::infinity();  ///< [sigma of the daughter]
 
     void save(ByteWriter& bytes) const;
     void restore(ByteReader& bytes);
