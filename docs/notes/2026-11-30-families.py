@@ -20,6 +20,7 @@ from clogsweep.reading import stored
 NECK = 0.05  # of the sweeps of arrays [sigma]
 EXIT = 17  # x at which a droplet has passed the post, whose x is 13 [sigma]
 PRECISION = 0.0005  # of half-widths [sigma]
+PARTS = (1, 0.75, 0.5, 0.25)  # of the largest line tension at which a droplet breaks up
 RESAMPLES = 10000
 
 
@@ -53,7 +54,7 @@ def ratio_of_daughters(collisions, offset, tension):
     circles, sweep = collisions.folder / "circle.csv", collisions.folder / "family.h5"
     circles.write_text(f"x,y,diameter\n{collision.BOX / 2 + collision.FALL},{collision.BOX / 2 + offset},"
                        f"{collision.DIAMETER}\n", encoding="utf-8")
-    keys = collisions.keys | {"break-up": "daughters", "line-tension": f"{tension:.6g}", "smallest-daughter": "0.02"}
+    keys = collisions.keys | {"break-up": "daughters", "line-tension": f"{tension:.6g}", "smallest-daughter": "0.7"}
     subprocess.run([collisions.clogsweep, f"obstacles={circles}", f"box={collision.BOX}", "seeds=1",
                     *(f"{key}={value}" for key, value in keys.items()), "--output", sweep, "--quiet"], check=True)
     droplets = pandas.read_hdf(sweep, "droplets").set_index("path")
@@ -63,19 +64,22 @@ def ratio_of_daughters(collisions, offset, tension):
 
 
 def symmetry(programs, folder):
-    """At each offset: the largest line tension at which the droplet breaks up, and the areas of its daughters."""
+    """At each offset: the largest line tension at which the droplet breaks up, and the ratio of its daughters' areas at
+    this tension, and at smaller ones."""
     collisions = collision.Collisions(programs / "clogsweep", folder, {})
     found = []
+    print("offset,S,line_tension," + ",".join(f"ratio_at_{part:g}" for part in PARTS), flush=True)
     for offset in OFFSETS:
         low, high = collisions.threshold(offset)
         if not (low and high):
             print(f"# offset {offset:g}: no border in the range of line tensions", flush=True)
             continue
-        ratio, softer = (ratio_of_daughters(collisions, offset, tension) for tension in (low, low / 2))
-        found.append((collision.symmetry(offset), ratio, math.sqrt(low * high)))
-        print(f"{offset:g},{found[-1][0]:.4f},{ratio:.4f},{softer:.4f},{found[-1][2]:.5f}", flush=True)
-    shapes, ratios, tensions = zip(*found)
-    for name, values in (("S", shapes), ("ratio of areas", ratios)):
+        found.append([collision.symmetry(offset), math.sqrt(low * high),
+                      *(ratio_of_daughters(collisions, offset, part * low) for part in PARTS)])
+        print(f"{offset:g},{found[-1][0]:.4f},{found[-1][1]:.5f}," +
+              ",".join(f"{ratio:.4f}" for ratio in found[-1][2:]), flush=True)
+    shapes, tensions, *ratios = zip(*found)
+    for name, values in [("S", shapes), *((f"ratio_at_{part:g}", ratio) for part, ratio in zip(PARTS, ratios))]:
         slope, error = slope_of(values, tensions)
         print(f"# slope against {name}: {slope:.3f} +- {error:.3f}", flush=True)
 
@@ -134,7 +138,9 @@ def compare(name, first, second, chance):
     pairs = list(zip(first, second))
     said = []
     for statistic in (mean_number, mean_diameter):
-        ratio = lambda drawn: statistic([b for _, b in drawn]) / statistic([a for a, _ in drawn])
+        def ratio(drawn, statistic=statistic):
+            return statistic([b for _, b in drawn]) / statistic([a for a, _ in drawn])
+
         said.append(f"{ratio(pairs):.3f} ({', '.join(f'{end:.3f}' for end in interval(pairs, ratio, chance))})")
     print(f"{name}: largest difference {gap:.2f}, p = {probability:.4f}; ratio of numbers {said[0]}, "
           f"of mean diameters {said[1]}", flush=True)
@@ -157,7 +163,7 @@ def sweep(path, outlet=50.0):
         sets.setdefault(key, {})[int(row.seed)] = task
     passed = {key: [np.array(at_outlet(families[task], outlet)) for _, task in sorted(tasks.items())]
               for key, tasks in sets.items()}
-    print("line_tension,neck,vertices,speed_exponent,number,number_lower,number_upper,"
+    print("line_tension,neck,vertices,speed_exponent,number,lower,upper,"
           "mean_diameter,lower,upper,seconds")
     for key, tasks in sets.items():
         number, diameter = (interval(passed[key], statistic, chance) for statistic in (mean_number, mean_diameter))
