@@ -96,14 +96,14 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
        equals("Gamma_exp", scales.line_tension_experiment)},
       {fmt::format("line tension of the model, {} Gamma_exp", console::plain(lab.tension_ratio)), "",
        equals("Gamma", scales.line_tension)},
-      {"soft disk that sags as far on a flat wall", with_unit(scales.sag * scales.length / milli, "mm"),
+      {"soft disk with the droplet's sag on a flat wall", with_unit(scales.sag * scales.length / milli, "mm"),
        equals("E_w", scales.wall_stiffness)},
       {"capillary number at the terminal speed", "", equals("Ca", scales.capillary_number)}};
   if (!std::isnan(lab.thickness)) {
     lines.push_back({"line tension of the cell, tension times thickness",
                      with_unit(scales.line_tension_of_cell / (milli * milli), "uN"), ""});
-    lines.push_back({"neck that breaks, as wide as the cell is thick", with_unit(lab.thickness / milli, "mm"),
-                     equals("break-up-neck", scales.break_up_neck)});
+    lines.push_back({"width of a neck that breaks: the cell's thickness",
+                     with_unit(lab.thickness / milli, "mm"), equals("break-up-neck", scales.break_up_neck)});
   }
   return lines;
 }
@@ -124,16 +124,17 @@ struct Conversion {
 };
 std::vector<Conversion> conversions(const Laboratory& lab, const Scales& scales) {
   const auto times = [](double unit) { return [unit](double model) { return model * unit; }; };
-  return {{"length", "r/sigma", "length_mm", "length", "mm", times(scales.length / milli)},
-          {"time", "t/t0", "time_s", "time", "s", times(scales.time)},
-          {"line-tension", "Gamma", "tension_mN_per_m", "interfacial tension at this tilt", "mN/m",
-           times(scales.tension / milli)},
-          {"line-tension", "Gamma", "angle_degrees", "or tilt with this tension", "deg",
-           [&lab](double model) { return laboratory::tilt_of(model, lab) / degree; }, why_no_tilt(lab)},
-          {"terminal-speed", "V_t", "speed_mm_per_s", "terminal speed", "mm/s",
-           times(scales.length / scales.time / milli)},
-          {"wall-stiffness", "E_w", "line_tension_of_equal_sag", "Gamma of the droplet that sags as far", "",
-           [](double model) { return laboratory::line_tension_of_sag(std::numbers::pi / (16 * model)); }}};
+  return {
+      {"length", "r/sigma", "length_mm", "length", "mm", times(scales.length / milli)},
+      {"time", "t/t0", "time_s", "time", "s", times(scales.time)},
+      {"line-tension", "Gamma", "tension_mN_per_m", "interfacial tension at this tilt", "mN/m",
+       times(scales.tension / milli)},
+      {"line-tension", "Gamma", "angle_degrees", "or tilt with this tension", "deg",
+       [&lab](double model) { return laboratory::tilt_of(model, lab) / degree; }, why_no_tilt(lab)},
+      {"terminal-speed", "V_t", "speed_mm_per_s", "terminal speed", "mm/s",
+       times(scales.length / scales.time / milli)},
+      {"wall-stiffness", "E_w", "line_tension_of_equal_sag", "Gamma of the droplet with this disk's sag", "",
+       [](double model) { return laboratory::line_tension_of_sag(std::numbers::pi / (16 * model)); }}};
 }
 
 Line line_of(const Conversion& conversion, double model) {

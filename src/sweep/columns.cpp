@@ -191,10 +191,9 @@ Column filling_column() {
 }
 
 Column density_column() {
-  Column column = member(
-      "obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
-      "obstacles per area; in saturated arrays the jamming limit 0.6966/(w_ob+sigma_ob)^2, or NaN if their "
-      "obstacles have different diameters");
+  Column column = member("obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
+                         "number of obstacles per area; for saturated arrays the jamming limit "
+                         "0.6966/(w_ob+sigma_ob)^2, or NaN if the diameters differ");
   column.symbol = parameter("obstacle-density").symbol;
   column.shapes_array = true;
   column.set = [](RunRow& row, const Value& value) {
@@ -221,8 +220,7 @@ Column density_column() {
 Column preset_column() {
   Column column = member(
       "preset", &RunRow::preset, ColumnRole::parameter, "",
-      "preset with the run's values of the interface's keys; custom: no preset has these values; none: "
-      "soft disk",
+      "preset that has the run's values of the interface's keys; custom: no preset has them; none: soft disk",
       16);
   column.scope = parameter("perimeter-spring").scope;
   column.usual = [](const RunRow&) -> Value { return find_key("preset").default_text; };
@@ -236,8 +234,8 @@ std::vector<Column> columns_of_dwells() {
     const std::string name = dwell_column(i);
     const std::string meaning = i == 0
                                     ? "longest time in which the droplet advanced by at most dwell_length; a "
-                                      "dwell cut off by the end of the run counts, the clog does not; NaN: "
-                                      "no dwell was longer than ten times dwell_length/V_t"
+                                      "dwell cut off by the end of the run counts, but the clog does not; "
+                                      "NaN: no dwell was longer than ten times dwell_length/V_t"
                                     : "longest dwell before " + dwell_column(i - 1) + "; NaN: there was none";
     all.push_back(member(
         name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, result, "t0", meaning));
@@ -250,12 +248,12 @@ std::vector<Column> columns_of_dwells() {
   }
   all.push_back(member(
       "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, result, "t0",
-      "the dwell columns contain, for each duration above this value, the first dwell that was longer than "
-      "the duration"));
+      "for every duration above this value, the dwell columns contain the first dwell that exceeded the "
+      "duration"));
   all.push_back(member(
       "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, result, "sigma",
-      "distance at which the last dwell of any duration began, which is the clog or the dwell at the end of "
-      "the run"));
+      "distance at which the last dwell of any duration began; this dwell is the clog or, in other runs, the "
+      "one at the end"));
   all.push_back(member(
       "last_dwell_from", [](auto& row) -> auto& { return row.dwells.last_begin; }, result, "t0",
       "time at which this dwell began"));
@@ -267,7 +265,7 @@ std::vector<Column> columns_before_dwells() {
   return {
       preset_column(),
       member("model_version", &RunRow::model_version, parameter, "",
-             "version of the model; versions give different results for the same parameters"),
+             "version of the model; two versions may give different results for the same parameters"),
       member("status", &RunRow::status, result, "",
              "clogged; broken: a neck of the droplet got thinner than break_up_neck; flowing: the run "
              "reached max_time; passed: the droplet reached the exit or the end of the channel; failed: see "
@@ -280,9 +278,9 @@ std::vector<Column> columns_before_dwells() {
              "empty: unknown",
              16),
       member("stability", &RunRow::stability, result, "",
-             "stable: the clogged droplet would return after any small displacement; unknown: differences of "
-             "forces do not decide whether it would; none: not clogged; empty: unknown (not computed by this "
-             "version)",
+             "stable: the clogged droplet would return after any small displacement; unknown: numerical "
+             "derivatives of the forces cannot decide whether it would; none: not clogged; empty: the "
+             "program's version did not compute this",
              16),
       member("failed_by", &RunRow::failed_by, result, "",
              "crossing: the interface crossed itself; divergence: the integration diverged; crash: the "
@@ -291,16 +289,16 @@ std::vector<Column> columns_before_dwells() {
       member("distance", &RunRow::distance, result, "sigma",
              "displacement of the centre of mass along the flow since release"),
       member("sound_distance", &RunRow::sound_distance, result, "sigma",
-             "distance at the last check that found the droplet whole and not crossing itself, at which "
-             "failed runs are censored; NaN: unknown"),
+             "distance at the last check that found the droplet whole and not crossing itself; failed runs "
+             "are censored there; NaN: unknown"),
       member(
           "lateral_displacement", [](auto& row) -> auto& { return row.lateral; }, result, "sigma",
           "displacement across the flow"),
       member("time", &RunRow::time, result, "t0", "time since release"),
       member(
           "mean_speed", [](auto& row) -> auto& { return row.speed.mean; }, result, "sqrt(sigma g)",
-          "distance divided by time between transient and arrest; NaN if the droplet moved less than half "
-          "a diameter in that time, or if the transient took more than half of the run"),
+          "mean speed from the end of the transient to the arrest; NaN if the droplet moved less than half a "
+          "diameter in that time, or if the transient took more than half of the run"),
       member(
           "mean_speed_error", [](auto& row) -> auto& { return row.speed.error; }, result, "sqrt(sigma g)",
           "standard error of mean_speed from its variation during the run; NaN if the run was too short"),
@@ -314,11 +312,11 @@ std::vector<Column> columns_before_dwells() {
           "steady_distance", [](auto& row) -> auto& { return row.steady.distance; }, result, "sigma",
           fmt::format(
               "displacement along the flow from the time {:g} sigma/V_t to the end of the run, or to the "
-              "last dwell of a clogged run; NaN: the run, or the way to its clog, was shorter",
+              "last dwell of a clogged run; NaN: the run ended, or its last dwell began, before this time",
               SteadyRecord::free_fall)),
       member(
           "steady_time", [](auto& row) -> auto& { return row.steady.time; }, result, "t0",
-          "time in which the droplet went steady_distance"),
+          "time that the droplet took for steady_distance"),
   };
 }
 
@@ -347,12 +345,12 @@ std::vector<Column> columns_after_dwells() {
           "clogged polygon"),
       member(
           "num_wrapped", [](auto& row) -> auto& { return row.hold.geometry.num_wrapped; }, result, "",
-          "number of touched obstacles over which the clogged polygon hangs, 0 for other droplets; -1: "
-          "unknown"),
+          "number of obstacles that the clogged polygon touches and over which it hangs; 0 for other "
+          "droplets; -1: unknown"),
       member(
           "num_gaps", [](auto& row) -> auto& { return row.hold.geometry.num_gaps; }, result, "",
-          "number of gaps in front of the clogged polygon; at least one side of such a gap supports the "
-          "polygon; -1: unknown"),
+          "number of gaps that are in front of the clogged polygon and support it on at least one side; -1: "
+          "unknown"),
       member(
           "num_arcs", [](auto& row) -> auto& { return row.hold.geometry.num_arcs; }, result, "",
           "number of arcs of contact; -1: unknown"),
@@ -362,9 +360,9 @@ std::vector<Column> columns_after_dwells() {
           "over obstacles; NaN for other droplets"),
       member(
           "friction_use", [](auto& row) -> auto& { return row.hold.friction_use; }, result, "",
-          "moment of the wall's friction about a post's centre divided by the largest that friction could "
-          "bear in this direction, the largest over the posts over which a clogged polygon hangs and that "
-          "give at least a tenth of its support; NaN for other droplets"),
+          "moment of friction about a post's centre, divided by the largest moment that friction could exert "
+          "in this direction; the maximum over all posts over which the clogged polygon hangs and that give "
+          "at least a tenth of its support; NaN for other droplets"),
       member(
           "largest_shape_parameter",
           [](auto& row) -> auto& { return row.passage.largest_shape_parameter.value; }, result, "",
@@ -403,12 +401,11 @@ std::vector<Column> columns_after_dwells() {
              "back; -1: unknown"),
       member(
           "release_x", [](auto& row) -> auto& { return row.release[0]; }, result, "sigma",
-          "place of release of the centre of mass in their array, in the coordinates of user-supplied "
-          "circles; "
-          "NaN for other obstacles"),
+          "x of the centre of mass at release, in the coordinates of the user-supplied circles; NaN for "
+          "other obstacles"),
       member(
           "release_y", [](auto& row) -> auto& { return row.release[1]; }, result, "sigma",
-          "place of release across the flow, in the same coordinates; NaN for other obstacles"),
+          "y of the centre of mass at release, in these coordinates; NaN for other obstacles"),
       member("steps", &RunRow::steps, result, "",
              "number of integrated steps; each sub-step counts as one step"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",

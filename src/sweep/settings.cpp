@@ -208,7 +208,8 @@ std::set<std::string> Settings::keys_that_follow() const {
       if (!branch.given_[i] && !given_[i] && now[i] != entries()[i] && now[i]->text != entries()[i]->text)
         following.insert(keys()[i].name);
   });
-  if (following.contains(layout_key))  // if stored, the keys of a channel would set the layout
+  // Channel keys in a stored config would set obstacle-layout, which has to follow from each branch.
+  if (following.contains(layout_key))
     for (const Key& key : keys())
       if (is_of_channel(key) && !is_given(key.name)) following.insert(key.name);
   return following;

@@ -372,7 +372,7 @@ class Sizes(LaboratoryTest):
         self.assertEqual(groups.axis_label(), "diameter of the droplet [mm]")
         self.assertEqual(groups.values("obstacle_gap"), {0.4})
         self.assertEqual(groups.values("obstacle_density"), {0.8})
-        self.assertRegex(groups.caption(), r"/\\mathrm\{mm\} = 0.4\$.*\\mathrm\{mm\}\^2 = 0.8\$")
+        self.assertRegex(groups.caption(), r"gap \$0.4.*mm.*density \$0.8/.*mm.*\^2\$")
         axes = style.figure_of(lengths.draw_on, groups).axes[0]
         self.assertEqual(axes.get_ylabel(), r"$\lambda$ [mm]")
         bound = max(group["clogging_length_lower_mm"] for group in groups.members if group["clogs"] == 0)

@@ -49,7 +49,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--holes", action="store_true",
                         help="the posts are holes in the drawn areas; their outer edge is that of the device")
     parser.add_argument("--posts", choices=("dark", "bright"),
-                        help="brightness of the posts in a picture "
+                        help="whether the posts are dark or bright in the picture "
                              "(bright if the border and most of the area are dark, otherwise dark)")
     parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: use only this rectangle, "
                                                          "in the unit and coordinates that the drawing program shows")

@@ -114,7 +114,7 @@ def drawn(svg: bytes, path: pathlib.Path) -> bytes:
 
 
 def replace_uses(flat: Any) -> None:
-    """Replaces references to groups by these groups. librsvg makes references of groups with an opacity."""
+    """Replaces each <use> of a group by the group itself. librsvg writes a group that has an opacity as a <use>."""
     originals = {element.get("id"): element for element in flat.iter(NAMESPACE + "g")}
     for parent in list(flat.iter()):
         for index, child in enumerate(list(parent)):

@@ -34,7 +34,7 @@ class Drawing:
     """A drawing as read from its file. Lengths are in the drawing's own unit, and y points upwards."""
 
     circles: list[tuple[float, float, float]]  # Each has x, y and diameter.
-    # Corners (n, 2). The last corner is joined to the first, unless the border of a picture cuts the outline.
+    # Corners (n, 2) of each outline. Its last corner is joined to its first, unless the border of a picture cuts it.
     outlines: list[Numbers]
     metres: float | None  # Length of the drawing's unit [m]; None if the file does not state it.
     frame: Box | None = None  # A picture, or the region that the user gave.

@@ -40,7 +40,9 @@ def line_at(group: Group, distance: float) -> dict[str, Any] | None:
 
 
 def outlet_of(members: Sequence[Group], asked: float | None) -> float:
-    """The line at which diameters are counted. @throws UserError  if no group has this line"""
+    """Distance of the line at which the distribution of diameters is taken [sigma]: the one asked for, or the farthest
+    line at which most of the area is known (the first line if there is none). @throws UserError  if no droplet reached
+    a line, or none reached the one asked for"""
     known = sorted({line["distance"] for group in members for line in group["families"]["lines"]})
     if not known:
         raise UserError("no droplet went 10 sigma; make max-time longer")

@@ -10,7 +10,7 @@ from ..tools.texts import literal
 
 AXES = {
     "line_tension": r"line tension $\Gamma$ [$g\rho\sigma^2$]",
-    "wall_stiffness": r"wall stiffness $E_w = \epsilon_w/(g\rho\sigma^3)$",
+    "wall_stiffness": r"wall stiffness $E_w$ [$g\rho\sigma^3$]",
     "capillary_number": r"capillary number $Ca = (v_g/v_t)\,\pi/(4\Gamma)$",
     "sag": r"sag of the centroid under its own weight $/\sigma$",
     "top_sag": r"sag of the top under its own weight $\delta_s/\sigma$",
@@ -96,6 +96,8 @@ def phrase(column: Column, value: float | str | None) -> str:
         return parameter_label(column, value)
     if column["name"] == "vertices":
         return f"{value:g} vertices"
+    if column["unit"] == "degrees":
+        return f"{column['name'].replace('_', ' ')} {value:.4g}°"
     unit = column["unit"]
     after = f"/{tex(unit[2:])}" if unit.startswith("1/") else rf"\,{tex(unit)}" if unit else ""
     return f"{column['name'].replace('near_wall', 'near-wall').replace('_', ' ')} ${number(value)}{after}$"

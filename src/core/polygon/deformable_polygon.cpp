@@ -110,8 +110,9 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   const EquilibriumForces asked = forces_along_interface(run, rest_forces);
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
-  // Springs tie the droplet to walls. Their anchors stay fixed during a search. A wall that yields then
-  // exerts its largest force, wherever the droplet moves. Searches are repeated until no wall yields.
+  // Springs tie the droplet to walls. Their anchors stay fixed during a search. A wall that has yielded
+  // exerts its largest force, wherever the droplet moves. The search is repeated, at most most_yields times,
+  // until every wall can bear the force that it has to exert.
   constexpr int most_yields = 20;
   // If all walls can hold, the excess after this many yields is below the first excess
   // (docs/notes/2026-11-25-searches-with-friction.md). Otherwise it stays far above the first excess, even

@@ -155,7 +155,8 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
   const Eigen::Array2d centre{circle.x, circle.y};
   const double lowest = circle.radius + range_;  // distance of layer 0 from the centre
   const double far = (lowest + highest_layer * film_ + skin_) * (1 + rounding);
-  // The middle of an edge that the circle may touch is nearer than this, and so are the parts below the edge.
+  // If the circle may touch an edge, the edge's middle is closer to the circle's centre than farthest_middle.
+  // The same holds for the parts of the interface between that edge and the circle.
   const double farthest_middle = far + longest_edge_;
   nearby_groups_.clear();
   for (int group = 0; group < static_cast<int>(bounds_.size()); ++group)
