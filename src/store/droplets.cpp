@@ -23,7 +23,7 @@ struct Line {
   double birth[3], end[3];
   char status[8], mechanism[8];
 };
-static_assert(sizeof(Line) == 8 + longest_path + 7 * 8 + 16,
+static_assert(sizeof(Line) == 8 + longest_path + 7 * sizeof(double) + 16,
               "the line has gaps, whose bytes are not defined");
 
 struct LineColumn {
