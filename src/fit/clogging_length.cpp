@@ -114,8 +114,9 @@ double least_squares_length(std::span<const Observation> runs) {
     }
     return sum;
   };
-  // Bounds of the fitted length. The upper bound assumes a single clog in this number of runs and a straight
-  // line to it, with a margin. The lower bound is much smaller than the distance of the first clog.
+  // Bounds of the fitted length. The upper bound is the length for a single clog among all runs, with a
+  // margin, if P(r) falls to it in a straight line. The lower bound is much smaller than the distance of the
+  // first clog.
   const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
   const double high = std::log(10 * static_cast<double>(runs.size()));

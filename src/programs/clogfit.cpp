@@ -129,9 +129,10 @@ int clogfit(int argc, const char* const* argv) {
       .option(
           "pool",
           "join groups that differ only in these keys: max-time, boxes, or both with a comma between them")
-      .option("lines",
-              "x1,x2,...: count the droplets that passed these lines across a device, instead of the rows of "
-              "its posts [sigma]")
+      .option(
+          "lines",
+          "x1,x2,...: lines across a device at which droplets that passed are counted; by default at every "
+          "row of posts [sigma]")
       .option("row-angle", "tilt of the rows of user-supplied circles from the flow towards +y [degrees]")
       .option("dwell", "droplets that rest for this time count as clogged [t0]")
       .option("mixture",

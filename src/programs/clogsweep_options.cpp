@@ -154,9 +154,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       .flag("schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")
       .option("master-computes", "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no",
               "auto")
-      .option("max-hours",
-              "stop after this number of hours in the same way as after a signal; the same command resumes "
-              "the sweep")
+      .option("max-hours", "stop the sweep after this number of hours; the same command resumes it")
       .option("points",
               "CSV file with parameter sets in place of lists: the first line names keys, each further line "
               "has their values")
@@ -170,7 +168,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
               "`seeds`)")
       .option("seeds-per-set",
               "add seeds to every parameter set until it has this number, including seeds in the output file")
-      .option("attempts", "number of attempts for a run that fails", "2")
+      .option("attempts", "number of attempts for a run that crashes", "2")
       .option("report-seconds",
               "interval at which a running task reports its progress; a killed task loses at most this time",
               "10")

@@ -102,7 +102,7 @@ ByValues by_values(const std::vector<ParameterSet>& sets, const std::vector<std:
   return all;
 }
 
-/// Appends the sets of a side with values in Comparisons::columns that no set of the other side has.
+/// Appends the unmatched sets of a side: no set of the other side has their values in Comparisons::columns.
 void append_unmatched(Comparisons& comparisons, const Side& side, const Side& compared_with,
                       const ByValues& own, const ByValues& others) {
   std::vector<std::vector<Value>> unmatched;

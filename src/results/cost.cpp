@@ -59,7 +59,7 @@ class ResidualTime {
   fit::CloggingLength even_;     // fit to the times: every run is equally likely to end next
   fit::CloggingLength slowing_;  // fit to their logarithms: the remaining time grows with the time so far
 
-  /// Counts half an end more than there are, so that the mean is finite even without any end.
+  /// Adds half an end to the number of ends, so that the mean is finite even without any end.
   static double mean(const fit::CloggingLength& fit) { return fit.total_distance / (fit.num_clogs + 0.5); }
 
   /// Mean remaining time for exponential ends, P = exp(-t/mean).

@@ -263,9 +263,9 @@ bool is_quantity(const std::string& label) {
                              [&](const sweep::Key& key) { return label_key(key.name) == label_key(label); });
 }
 
-/// Names columns in which every value has only clogged, or only moving droplets. A column is not named if at
-/// least half of the droplets have a unique value there, because it may number the droplets. Quantities that
-/// were set before the run are not named, either.
+/// Names columns in which every value has only clogged, or only moving droplets. A column that may number the
+/// droplets is not named: at least half of them have a unique value there. Quantities that were set before
+/// the run are not named, either.
 void hint_at_outcomes(const DistanceTable& table) {
   for (std::size_t i = 0; i < table.labels.size(); ++i) {
     if (is_quantity(table.labels[i])) continue;

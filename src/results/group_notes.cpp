@@ -46,7 +46,7 @@ std::string column_notes(const std::vector<Group>& groups) {
         "lambda_b\n";
   if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
-        "passed: droplets that reached the exit. They count as not clogged on their way, so lambda may "
+        "passed: droplets that reached the exit. They count as not clogged up to there, so lambda may "
         "exceed the device's length\n";
   if (std::ranges::all_of(groups, [](const Group& group) { return is_device(group.first_row.parameters); }))
     text +=

@@ -105,7 +105,7 @@ bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const
       groups, [&](const Group& group) { return group_columns()[place]->get(group.first_row); }, shown_values);
 }
 
-/// Whether the row lacks a value because the other model alone has this parameter.
+/// Whether the row lacks a value because only the other model has this parameter.
 bool lacks_as_model(const sweep::Column& column, const sweep::RunRow& row) {
   RunParameters of_other_model = row.parameters;
   of_other_model.model = row.parameters.model == Model::dp ? Model::sp : Model::dp;
@@ -127,8 +127,8 @@ const Group* group_of_only_model(const sweep::Column& column, const std::vector<
   return do_some_lack ? with_value : nullptr;
 }
 
-/// Columns that vary, except those whose automatic values follow from the others, and those that vary only
-/// because one of the models lacks them.
+/// Columns that vary. Two kinds are left out: automatic values that follow from the other columns, and
+/// columns that vary only because one of the models lacks them.
 std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vector<bool>& varies) {
   const sweep::RunRow& first = groups.front().first_row;
   const RunParameters& run = first.parameters;
@@ -158,8 +158,8 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
   return shown;
 }
 
-/// The parameters that need a mention and that all groups share, or all groups of the one model that has
-/// them, by the name of this model. Automatic values have a star.
+/// Parameters that need a mention because they have one value for all groups, or for all groups of the only
+/// model that has them; by the name of this model. Automatic values have a star.
 /// @param named  parameters that are named above or in the table; the function adds its own
 std::map<std::string, std::vector<std::string>> shared_words(const std::vector<Group>& groups,
                                                              const std::vector<bool>& varies,

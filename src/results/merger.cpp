@@ -220,7 +220,7 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   return console::json_text(part, -1) + attribute(file.provenance, "parts");
 }
 
-/// Attributes that a new file does not take from `maker`. It has its own, which summarise the attributes of
+/// Attributes that a new file does not take from `maker`. In the new file they summarise the attributes of
 /// its parts.
 static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
                                                            "num_wanted"};

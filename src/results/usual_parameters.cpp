@@ -37,8 +37,8 @@ bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
 
 enum class Others { all, independent };
 
-/// Whether the value is automatic for the row's other parameters: for all of them, or for those that do not
-/// follow from this value.
+/// Whether `auto` would give this value, computed either from all other parameters of the row, or only from
+/// those that do not follow from this value.
 bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
   if (are_circles_missing(row.parameters)) return true;  // unknown without the circles

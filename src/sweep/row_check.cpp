@@ -355,8 +355,8 @@ std::string family_fault(const RunRow& row) {
 ///
 /// In rows of models before the twelfth, droplets that were released a little across the border have a place
 /// a little outside. Some droplets started outside the first period of the shifted array (see the scene of
-/// user-supplied circles). Their stored place is half a period or more outside, and wrong, and so is their
-/// distance to the exit.
+/// user-supplied circles). Their stored place is wrong, half a period or more outside; so is their distance
+/// to the exit.
 std::string release_fault(const RunRow& row) {
   if (!is_known(row.release[0]) && !is_known(row.release[1])) return "";
   const ObstacleParameters& obstacles = row.parameters.obstacles;

@@ -56,8 +56,8 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
     double value =
         logarithmic ? first * portable::pow(last / first, fraction) : std::lerp(first, last, fraction);
     if (i == count - 1 && count > 1) value = last;
-    // Twelve digits are enough for the values that a user would write. They avoid 0.30000000000000004 in the
-    // file.
+    // Twelve digits are enough for the values that a user would write. With more digits the file would
+    // contain 0.30000000000000004.
     if (i > 0 && i < count - 1) {
       char digits[32];
       const char* const end =

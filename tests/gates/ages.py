@@ -14,7 +14,7 @@ import known
 GALLERY = known.ROOT / "docs/gallery"
 VERSION = re.search(r"int model_version = (\d+);", (known.ROOT / "include/clog/core/parameters/parameters.hpp").read_text())[1]
 NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
-SINGLE = ("single runs", "own sweep")  # Those that no sweep of the queue will change.
+SINGLE = ("single runs", "own sweep")  # No sweep of the queue will change these pictures.
 FULL = ("full", *SINGLE)
 
 

@@ -1305,7 +1305,7 @@ class OtherTools(Analysis):
         # Without an edge, the device begins half a droplet, 100, beyond the posts.
         np.testing.assert_allclose(self.circles_of("device.svg"), [(150, 730, 100), (1730, 150, 100), (2530, 730, 100)], atol=0.2)
         self.assertEqual(self.drawing.notes, ["3 posts left out that reach into the page from outside"])
-        # The same posts in a larger drawing, of which a region is read. Its edge is that of the region.
+        # The same posts in a larger drawing, of which a region is read. The edge of the region is the device's.
         self.write("device.svg", whole.replace('0 0 3600 1200', '-1000 -1000 7200 2400').replace("3.6mm", "7.2mm").replace("1.2mm", "2.4mm").format(posts))
         np.testing.assert_allclose(self.circles_of("device.svg", region=(0, 0, 3600, 1200)), [(20, 600, 100), (1600, 20, 100), (2400, 600, 100)], atol=0.2)
         # A background that is larger than the page is seen as the page, and a bar is cut.

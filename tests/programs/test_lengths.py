@@ -86,7 +86,7 @@ class Lengths(ProgramTest):
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
         # The table of the Python module. Some expected values come from R's summary(..., times=161). The others come
-        # from the last step of the other group; R gives no bounds for this step, either.
+        # from the last step of the second group, for which R, too, gives no bounds.
         groups = [*printed["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
         known = types.SimpleNamespace(output={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))

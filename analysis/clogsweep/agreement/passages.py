@@ -92,9 +92,9 @@ def drag_exponent(runner: Runner) -> Finding:
 
 
 def profiles_are_smooth(runner: Runner) -> Finding:
-    """Compares the profiles of all meshes with that of the finest mesh. The verdict is IN_KIND if the profiles with 128
-    vertices or more are smooth, but some profile of a coarser mesh is not noisy, or ends because the droplet does not
-    pass."""
+    """Compares the profiles of all meshes with that of the finest mesh. The verdict is IN_KIND if all
+    profiles with 128 vertices or more are smooth, but a coarser mesh has a profile that is not noisy, or a droplet that
+    does not pass."""
     runs = channels.meshes(runner)
     *coarser, finest = sorted(runs)
     if not coarser or not coarser[0] < 128 <= coarser[-1]:

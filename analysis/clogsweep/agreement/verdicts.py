@@ -87,8 +87,8 @@ def words_of_variants(found: Sequence[tuple[str, Finding]]) -> tuple[str, str]:
 
 
 def for_contacts(judge: Callable[..., Finding], **arguments: Any) -> Callable[[Runner], Finding]:
-    """Judges a statement on passages through orifices. The published contact begins at half the distance of two
-    vertices from the wall. A variant has contact at the surface.
+    """Judges a statement on passages through orifices. The published contact begins before the wall, at
+    half the distance between two vertices. A variant has contact at the surface.
     @param judge  has a parameter `contact`"""
     def of_contacts(runner: Runner) -> Finding:
         published, surface = (judge(runner, contact=contact, **arguments) for contact in ("half-vertex", "surface"))

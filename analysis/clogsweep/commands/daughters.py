@@ -5,12 +5,12 @@
     python3 -m clogsweep daughters sweep.h5 --task 3     # the family of one run
     python3 -m clogsweep daughters sweep.h5 --task 3 --film film                # its motion
 
-The upper panels show, against the distance from the release, the share of the droplets' area that passes, with its
-interval, and how many droplets pass per droplet that was released. The lower panel is the distribution of their
-diameters where they leave the array: at the distance given by --outlet. With --task, the picture shows one family: each
-bar is a droplet, from where it was born to where it ended, and as thick as its diameter. With --film, all droplets of
-this family move in the array; each is replayed, the camera follows those that move, and those that clog stay. A droplet
-that was too small to be followed is a circle where it was born. The film is FILM.mp4 with ffmpeg, otherwise FILM.gif.
+The upper panels show two results against the distance from the release: the share of the droplets' area that passes,
+with its interval, and the number of droplets that pass per released droplet. The lower panel is the distribution of the
+diameters at the distance given by --outlet, where droplets leave the array. With --task, the picture shows one family:
+a bar for each droplet, from its birth to its end, as thick as the droplet's diameter. With --film, all droplets of this
+family move in the array; each is replayed, the camera follows those that move, and those that clog stay. A droplet that
+was too small to be followed is a circle where it was born. The film is FILM.mp4 with ffmpeg, otherwise FILM.gif.
 """
 
 import argparse

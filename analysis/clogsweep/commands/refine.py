@@ -46,7 +46,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
                         help="curve=20%%, peak=10%%, crossing=10:5%% or, for a lattice, critical-angle=0.5")
     parser.add_argument("--budget", metavar="H", help="largest number of core-hours of all runs together, e.g. 10h")
     parser.add_argument("--max-hours", type=command_line.between(0, 1e9, "hours"), default=math.inf, metavar="H",
-                        help="stop after this number of hours in the same way as after a signal")
+                        help="stop the sweep after this number of hours")
     parser.add_argument("--most-seeds", type=command_line.whole(1), metavar="N",
                         help=f"largest number of seeds of a value ({BLOCKS_OF_A_VALUE} times `seeds`)")
     parser.add_argument("--same-seeds", action="store_true", help="use the same seeds for all values")

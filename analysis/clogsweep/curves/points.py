@@ -56,8 +56,8 @@ def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
 
 
 def may_be_key(fit: Fit, column: Column) -> bool:
-    """Whether the parameter can be a key of curves. It can if it is a number that affects the physics and that the user
-    chose. A number that follows from other parameters cannot be a key."""
+    """Whether the parameter can be a key of curves: a number that affects the physics and that the user chose. A number
+    that follows from other parameters cannot be a key."""
     return column.get("parameter_role") == "physics" and column["kind"] != "word" and all(
         group[column["name"]] is not None and not is_automatic(fit, column, group) for group in fit["groups"])
 
@@ -240,7 +240,7 @@ def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
 
 
 def have_common_obstacles(members: Members, keys: Iterable[Column], seeds: Sequence[set[int]]) -> bool:
-    """Whether the points of a curve share obstacles. They do if they share seeds and no key shapes the array."""
+    """Whether the points of a curve share obstacles: if they share seeds, and no key shapes the array."""
     if any(key["shapes_array"] for key in keys):
         return False
     own = [seeds[index] for index in members.groups]

@@ -190,7 +190,7 @@ def unite(drawing: Drawing, circle_tolerance: float) -> None:
 def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
     """Pairs of outlines with bounding boxes that touch. Outlines as long and as wide as the drawing are excluded,
     because they are edges of the device. Rectangles as long as the drawing are walls, and touch no other outlines.
-    There is one exception: two of them are side by side, and one has notches, as pieces of an area with holes have."""
+    But two such rectangles side by side, one of them with notches, are treated as pieces of an area with holes."""
     if len(outlines) < 2:
         return []
     lows, highs = (np.array([end(outline, axis=0) for outline in outlines]) for end in (np.min, np.max))
@@ -201,7 +201,7 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
     near = NEAR * np.abs(np.ptp(np.vstack(outlines), axis=0)).max()
 
     def may_meet(i: int) -> Any:
-        """Whether each outline before the i-th may be united with it if they touch."""
+        """For each outline before the i-th: whether it may be united with the i-th one if they touch."""
         if is_post[i]:
             return is_post[:i]
         are_pieces = is_wall[:i] & (is_long[:i] == is_long[i]).all(axis=1) & (is_notched[:i] | is_notched[i])

@@ -121,7 +121,7 @@ def metres_of(path: pathlib.Path, tags: dict[int, Any]) -> float | None:
 
 
 def printed(tags: dict[int, Any]) -> str:
-    """Words that give the size of a pixel according to the resolution of a TIFF. This resolution is often that of a
-    printer."""
+    """Words that give the size of a pixel according to the resolution of a TIFF. Often a TIFF has the resolution of a
+    printer instead."""
     metres, number = METRES_IN_TIFF.get(tags.get(RESOLUTION_UNIT, 0), 0.0), float(tags.get(X_RESOLUTION, 0))
     return f" (its resolution would mean {metres / number * 1e6:.6g}um, if that is not a printer's)" if metres and number else ""

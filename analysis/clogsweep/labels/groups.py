@@ -24,7 +24,7 @@ def has_results(group: Group) -> bool:
 
 
 class Groups:
-    """Those groups of one sweep that have runs. The groups are drawn against one parameter of the sweep."""
+    """The groups of one sweep that have runs, drawn against one parameter of the sweep."""
 
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param fit  the JSON output of clogfit; @param circle_files  see stored.circle_files()"""
@@ -193,8 +193,8 @@ class Groups:
         return self._of_models(names)
 
     def _of_models(self, names: Iterable[str]) -> list[str]:
-        """Names of parameters in which groups differ, without those that follow from the model: one model has a single
-        value, and the other lacks them."""
+        """Names of parameters in which groups differ. A parameter that follows from the model (one model has a single
+        value, the other model lacks the parameter) is left out."""
         if not self.varies("model"):
             return list(names)
         return ["model", *(name for name in names if name != "model" and len(self.values(name) - {None}) > 1)]

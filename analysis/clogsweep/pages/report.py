@@ -100,7 +100,7 @@ def with_runs(members: Sequence[Group]) -> list[Group]:
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """Draws for each group of one curve the fractions of its runs that ended in each way. @param members  see
+    """Draws, for each group of a curve, which fraction of its runs each cause ended. @param members  see
     with_runs()"""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])

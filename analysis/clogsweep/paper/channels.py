@@ -329,7 +329,7 @@ def spring_deviations(runner: Runner, preset: str) -> tuple[Trajectory, dict[flo
                     terminal_speed=0.028, preset=preset, perimeter_spring="rest", perimeter_stiffness_ratio=SPRINGS)
     files = []
     for ratio, run in zip(SPRINGS, runs):
-        # The compared passages are longer than the reference, so that each of its frames lies within them.
+        # The reference is cut to a shorter passage, so that all its frames lie within the compared passages.
         frames = run.table[np.abs(run.table["h"]) < (1.2 if run is runs[0] and not runner.profiles else np.inf)]
         files.append(runner.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
                                   zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))

@@ -34,8 +34,8 @@ struct LengthRatio {
 };
 
 /// `interval` is the paired interval if pairs certainly help: the correlation is positive (one-sided, 2.5 %),
-/// and at least ten pairs are unlike. With fewer pairs, the coverage of the interval is too low
-/// (docs/notes/2026-11-24-paired-intervals.md).
+/// and the two runs of at least ten pairs differ. With fewer such pairs, the coverage of the interval is too
+/// low (docs/notes/2026-11-24-paired-intervals.md).
 /// @param here, there  all runs, including those of pairs
 /// @throws std::invalid_argument unless 0 < confidence < 1
 LengthRatio fit_length_ratio(std::span<const Observation> here, std::span<const Observation> there,

@@ -64,9 +64,9 @@ std::string lengths_json(const DistanceTable& table, double confidence, std::opt
 /// Names of all results that these functions print beside the labels.
 std::vector<std::string> names_of_lengths();
 
-/// Compares each group of the other tables with each group of the first table that has equal values of the
-/// labels that both tables have. The runs are not paired. If the tables have different units, lengths are in
-/// the diameters of each group's own droplets (diameter_of()).
+/// Compares each group of the other tables with groups of the first table. Groups are compared if they have
+/// equal values of all labels that occur in both tables. The runs are not paired. If the tables have
+/// different units, lengths are in the diameters of each group's own droplets (diameter_of()).
 /// @throws Error if units differ and a diameter is unknown, or if no groups can be compared
 Comparisons compare_distances(const std::vector<DistanceTable>& tables, double confidence,
                               std::optional<double> sigma_mm);

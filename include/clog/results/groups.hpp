@@ -134,8 +134,8 @@ struct Group {
   std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };
 
-/// Terminal speed of the group's runs [mm/s]. It may differ from that of the laboratory's droplet. NaN if the
-/// laboratory does not specify a speed.
+/// Terminal speed of the group's runs [mm/s]. The laboratory's droplet may have another terminal speed. NaN
+/// if the laboratory does not specify a speed.
 double terminal_speed_in_laboratory(const Group& group);
 
 /// Number of failures divided by the distance of the runs that count for the clogging length; NaN if they

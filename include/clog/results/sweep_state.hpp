@@ -58,7 +58,7 @@ class SweepState {
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.by_task.at(task)->row; }
-  /// If all runs that have begun have failed, the first of them, otherwise nullptr.
+  /// The first run that has begun, if all runs that have begun have failed; otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;
   /// Discards a failure, so that the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);

@@ -11,8 +11,8 @@ namespace clog::results {
 /// row's parameters are impossible.
 std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
-/// Whether the row's value in this column is the one that `auto` gives for the row's other parameters, or the
-/// one that the row's preset sets.
+/// Whether `auto`, with the row's other parameters, or the row's preset would give the row's value in this
+/// column.
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
 
 /// The value by which a column separates curves and comparisons. It is unset if the row's value is automatic

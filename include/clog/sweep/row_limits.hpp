@@ -20,7 +20,7 @@ std::string untested_parameters(const Plan& plan);
 double repetition_length(const RunRow& row);
 /// Whether the droplet has come as far as repetition_length().
 bool has_met_repetition(const RunRow& row);
-/// One line on whether runs of a plan may come as far as their repetition_length(); empty if none may.
+/// A warning of one line if runs of a plan may reach their repetition_length(); empty if none may.
 std::string possible_repetition(const Plan& plan);
 
 /// Lines about files of circles that leave a conspicuous part of their array bare, or have circles without a

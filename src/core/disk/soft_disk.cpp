@@ -75,8 +75,8 @@ DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacl
   return state;
 }
 
-/// Upper bound of the energy at release. It assumes that as many obstacles as fit into the disk's reach
-/// overlap the disk, each at most up to the disk's centre.
+/// Upper bound of the energy at release. It assumes that the disk overlaps the largest number of obstacles
+/// that fit into its reach, and that each obstacle reaches at most to the disk's centre.
 double energy_of_overlaps(const RunParameters& run) {
   const double spacing = run.obstacles.smallest_diameter() + run.obstacles.gap;
   const double across = (units::droplet_diameter + run.obstacles.diameter + spacing) / spacing;

@@ -725,9 +725,8 @@ std::vector<Parameter> self_contact_entries() {
              .unit = "sigma",
              .meaning = "distance below which the interface repels itself",
              .scope = &polygons,
-             .range = {positive,
-                       to(0.1, "this is the smallest thickness of the droplet, which could then not fold",
-                          "use at most 0.1")}}),
+             .range = {positive, to(0.1, "the droplet could not get thinner than this, so it could not fold",
+                                    "use at most 0.1")}}),
       entry("film-friction", [](auto& run) -> auto& { return run.dp.film_friction; },
             {.column = "film_friction",
              .meaning = "whether a closed film transmits wall friction to the interface above it; auto: on "
@@ -767,7 +766,8 @@ std::vector<Parameter> verdict_entries() {
              .meaning = "a droplet rests (dwells) while it advances by at most this length; the dwell "
                         "columns record for how long",
              .role = numerics,
-             .range = {positive, to(0.5, "a droplet that hangs on an obstacle moves less", "try 0.05")}}),
+             .range = {positive,
+                       to(0.5, "a droplet that hangs on an obstacle moves less than this", "try 0.05")}}),
       entry("break-up-neck", [](auto& run) -> auto& { return run.dp.break_up_neck; },
             {.column = "break_up_neck",
              .symbol = R"(w_\mathrm{b})",
@@ -775,7 +775,8 @@ std::vector<Parameter> verdict_entries() {
              .meaning = "a droplet has broken up when a neck between two of its lobes is narrower than this "
                         "width; 0: droplets never break up",
              .scope = &polygons,
-             .range = {not_negative, to(0.5, "an unbroken droplet in a gap is as narrow", "try 0.05")}}),
+             .range = {not_negative,
+                       to(0.5, "a droplet in a gap may be this narrow without breaking up", "try 0.05")}}),
       entry(
           "break-up", [](auto& run) -> auto& { return run.dp.break_up; },
           {.column = "break_up",

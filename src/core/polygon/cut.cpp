@@ -49,8 +49,8 @@ MovingPolygon polygon_of(const std::vector<Vertex>& vertices) {
   return polygon;
 }
 
-/// The part of the contour from vertex `first` to vertex `last`, including both, and then `end`, if it is not
-/// at one of these two.
+/// The part of the contour from vertex `first` to vertex `last`, including both. The vertex `end` is added
+/// unless it is at one of these two vertices.
 MovingPolygon part(const MovingPolygon& whole, Index first, Index last, const Vertex& end) {
   const Index n = whole.position.size() / 2;
   std::vector<Vertex> vertices;

@@ -19,8 +19,8 @@ constexpr double lobe_share = 0.02;
 /// Largest cosine of an angle that counts as a right angle. Across a bridge with straight sides, all segments
 /// are equally long. Without this tolerance, round-off would decide which segment is the shortest.
 constexpr double round_off = 1e-9;
-/// Whether a value, which is a cosine or sine times two lengths, is at most the round-off. The lengths are
-/// given as squares, to avoid square roots.
+/// Whether a value is at most the round-off. The value is the product of a cosine or sine and two lengths.
+/// The squares of the lengths are given, to avoid square roots.
 bool is_hardly_positive(double value, double squared_lengths) {
   return value <= 0 || value * value <= round_off * round_off * squared_lengths;
 }

@@ -311,7 +311,7 @@ double distance_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
   return run.obstacles.exit - start_of_path(run.obstacles, place_in_file(run, start)[0]);
 }
 
-/// The density. It is computed from the posts if the parameters lack it, as those of a stored row do.
+/// The density. If the parameters lack it, as in a stored row, it is computed from the posts.
 double circle_density(const ObstacleParameters& obstacles) {
   return obstacles.density.per_area ? *obstacles.density.per_area : posts_per_area(obstacles);
 }

@@ -126,8 +126,8 @@ struct DpParameters {
   std::optional<double> perimeter_stiffness;  ///< stiffness K_l [g rho sigma]; empty: automatic
   double perimeter_stiffness_ratio = 1e-3;    ///< K_l divided by Gamma, for springs to the rest length
   WallContact wall_contact = WallContact::edge;
-  /// Distance from a wall's surface at which contact begins [sigma]. If it is empty, it is half a vertex
-  /// diameter, as published; this makes every gap narrower by a vertex diameter.
+  /// Distance from a wall's surface at which contact begins [sigma]. Empty: half a vertex diameter, as
+  /// published. Every gap is then narrower by a vertex diameter.
   std::optional<double> contact_range = 0;
   /// Tension of the interface on a wall, divided by Gamma: (gamma_so - gamma_sw)/gamma_ow, which is minus the
   /// cosine of the contact angle (Young). It is 1 if a film of water covers all walls, as in the paper's

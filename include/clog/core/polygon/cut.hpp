@@ -15,11 +15,11 @@ struct MovingPolygon {
 
 /// The two parts of a polygon on both sides of a neck.
 ///
-/// Both parts have the ends of the neck as vertices. So their areas add up to that of the whole, and the area
-/// centroid of the whole is the weighted mean of those of the parts, with the areas as weights. The end of
-/// the neck on an edge moves with that edge. One common velocity is then added to both parts, so that the
-/// mean velocities of their vertices, weighted with the areas, add up to the mean velocity of the whole. (A
-/// droplet's mass is spread evenly over its vertices, and the mass of a part is proportional to its area.)
+/// Both parts have the ends of the neck as vertices. So the areas of the parts add up to the area of the
+/// whole, and the parts' area centroids, weighted with their areas, average to the centroid of the whole. The
+/// end of the neck on an edge moves with that edge. One common velocity is then added to both parts, so that
+/// the mean velocities of their vertices, weighted with the areas, add up to the mean velocity of the whole.
+/// (A droplet's mass is spread evenly over its vertices, and the mass of a part is proportional to its area.)
 std::array<MovingPolygon, 2> cut(const MovingPolygon& whole, const Neck& neck);
 
 /// The polygon with `num_vertices` vertices at equal distances along its contour. The first new vertex is at

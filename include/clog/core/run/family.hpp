@@ -59,9 +59,9 @@ std::vector<Member> restore_members(ByteReader& bytes);
 inline constexpr int fewest_vertices_of_a_daughter = 32;
 
 /// The parameters of a daughter in its own units, in which it has the diameter 1. Lengths are divided by its
-/// relative diameter d, times by sqrt(d), and Gamma by d^2, but Gamma is at most nearly_rigid_tension. The
-/// terminal speed of a droplet is proportional to its diameter to the power of speed-exponent n, so in these
-/// units it is multiplied by d^(n - 1/2). The step and the stiffnesses are automatic.
+/// relative diameter d, durations by sqrt(d), and Gamma by d^2, but Gamma is at most nearly_rigid_tension.
+/// The terminal speed of a droplet is proportional to its diameter to the power of speed-exponent n, so in
+/// these units it is multiplied by d^(n - 1/2). The step and the stiffnesses are automatic.
 /// @param ancestor  resolved
 /// @param time_left  from the birth until the ancestor's max-time [t0 of the ancestor]
 RunParameters daughter_parameters(const RunParameters& ancestor, double diameter, double time_left,

@@ -85,7 +85,8 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     hn::StoreMaskBits(D(), any, bits);
     touches.touching |= static_cast<unsigned>(bits[0]) << i;
 
-    // Adds up the forces in the order of the halves. For each half, the force on its own vertex comes first.
+    // Adds up the forces in the order of the halves. For each half edge, the force on the half's own
+    // vertex comes first.
     const auto if_touches = [](const Half& half, V share) {
       return Vectors{hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.x)),
                      hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.y))};

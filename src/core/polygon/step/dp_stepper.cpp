@@ -136,8 +136,8 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   rates_.fastest = now.speed;
   fastest_relative_ = now.relative_speed;
   kernel_.clear_pushes(n_, a);  // the new lists may contain other groups than the old ones
-  // A contact accelerates its vertices. So they move farther for a few steps, by up to half of the contact's
-  // depth per step. `travel` does not include this distance.
+  // A contact accelerates its vertices. For a few steps, this adds up to half of the contact's depth to their
+  // motion in each step. `travel` does not include this distance.
   constexpr double thrown = 4;
   const double unforeseen =
       0.1 * forces_->vertex_diameter() +
@@ -237,9 +237,9 @@ Contour DpStepper::contour() const {
 
 /// Finds the vertices that passed through edges in the last drift. Returns whether muted contacts changed.
 bool DpStepper::follow_crossings(DropletState& state, double nearest_pair) {
-  // When a vertex passes through an edge, the two are at most as far apart afterwards as they moved. Since
-  // the last survey, vertices may have become faster. Neighbours along the contour are not listed; they pass
-  // through each other's edges in folds that close fast.
+  // When a vertex has just passed through an edge, its distance from the edge is at most the distance that
+  // the two moved. Since the last survey, vertices may have become faster. Neighbours along the contour are
+  // not listed; they pass through each other's edges in folds that close fast.
   constexpr double faster = 3, fast = 0.3;
   const double way = 2 * fastest_relative_ * open_.length;
   const bool may_have_passed = faster * way >= nearest_pair || way >= fast * forces_->self_contacts().range();

@@ -13,12 +13,12 @@ namespace clog {
 /// them back.
 ///
 /// The repulsion of self-contact depends on the distance between a vertex and an edge, on whichever side of
-/// the edge the vertex is. Both sides are possible: if the outside of the droplet is between the two, there
-/// is a film of water, and if the inside is, a thread of oil. So a vertex with more kinetic energy than the
-/// barrier k_c d_s^2/2 would pass through the edge and then be pushed onward. To prevent this, a vertex is
-/// recorded (SelfCrossing) when its path passes through the inside of an edge. The record ends when its path
-/// leads back through this edge, or through a neighbouring edge to which the vertex has slid. Until then the
-/// vertex has the energy
+/// the edge the vertex is. Both sides are possible: a film of water may separate the vertex from the edge
+/// (they are neighbours across the outside), or a thread of oil (across the inside). So a vertex with more
+/// kinetic energy than the barrier k_c d_s^2/2 would pass through the edge and then be pushed onward. To
+/// prevent this, a vertex is recorded (SelfCrossing) when its path passes through the inside of an edge. The
+/// record ends when its path leads back through this edge, or through a neighbouring edge to which the vertex
+/// has slid. Until then the vertex has the energy
 ///   k_c [(d_s + D)^2 - d_s^2]/2.
 /// Its depth D is its distance from the edge, or less near an end of the edges (CrossingDepth). Other
 /// contacts between the vertex or its edges and these edges are muted, because unsigned distances do not
