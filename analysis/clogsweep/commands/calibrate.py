@@ -13,8 +13,8 @@ the laboratory's quantities.
 
 Keys of the droplet and its channel (clogrun channel --help) are given as KEY=VALUE or as options.
 
-Errors (+-) come from the scatter of a trial's frames about the best run, as if the frames were independent. The errors
-exclude those of the model and its mesh, so without noise they are too small.
+Errors (+-) come from the scatter of a trial's frames about the best run, as if the frames were independent. They do not
+include errors of the model and its mesh, so without noise they are too small.
 """
 
 import argparse

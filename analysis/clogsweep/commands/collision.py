@@ -1,5 +1,5 @@
-"""Finds and draws the largest line tension at which droplets break up on a single obstacle, for each offset from its
-centre.
+"""Finds and draws the largest line tension at which droplets break up on a single obstacle, for each offset of their
+path from its centre.
 
     python3 -m clogsweep collision --output collision                     # collision.png, collision.pdf; the numbers as CSV
     python3 -m clogsweep collision --output fine vertices=512 break-up-neck=0.05 --offsets 0,0.1,0.3
