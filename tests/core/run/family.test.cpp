@@ -73,15 +73,15 @@ TEST(Family, BeginsWhereTheMotherEnds) {
   const std::vector<Member> members = finished(soft_run(1)).members();
   std::map<std::string, Member> by_path;
   for (const Member& member : members) by_path[member.path] = member;
-  for (const auto& [path, mother] : by_path) {
+  for (const Member& mother : members) {
     if (mother.status != MemberEnd::broken) continue;
-    const Member &first = by_path.at(path + '0'), &second = by_path.at(path + '1');
+    const Member &first = by_path.at(mother.path + '0'), &second = by_path.at(mother.path + '1');
     const auto mean = [&](double a, double b) {
       return (first.diameter * first.diameter * a + second.diameter * second.diameter * b) /
              (mother.diameter * mother.diameter);
     };
-    EXPECT_NEAR(mean(first.birth.distance, second.birth.distance), mother.end.distance, 1e-9) << path;
-    EXPECT_NEAR(mean(first.birth.lateral, second.birth.lateral), mother.end.lateral, 1e-9) << path;
+    EXPECT_NEAR(mean(first.birth.distance, second.birth.distance), mother.end.distance, 1e-9) << mother.path;
+    EXPECT_NEAR(mean(first.birth.lateral, second.birth.lateral), mother.end.lateral, 1e-9) << mother.path;
     EXPECT_EQ(first.birth.time, mother.end.time);
   }
 }
