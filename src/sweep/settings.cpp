@@ -136,6 +136,10 @@ Settings::Entries Settings::resolved() const {
       all[place_of_key(key)] = std::make_shared<const Entry>(Entry{text, values_of(find_key(key), text)});
   };
   for (const auto& [key, text] : preset_texts(now("preset"))) follow(key, text);
+  // The preset's ratio has no meaning for other springs, or beside a given stiffness.
+  const std::size_t ratio = place_of_key("perimeter-stiffness-ratio");
+  if (!given_[ratio] && (now("perimeter-spring") != "rest" || now("perimeter-stiffness") != "auto"))
+    all[ratio] = defaults[ratio];
   const bool has_circles = now(circles_key) != "none";
   if (has_circles)
     follow(layout_key, "file");

@@ -84,6 +84,12 @@ class Families(SweepTest, Analysis):
         for program, more in (("clogsweep", []), ("clogrun", ["--output", "r.h5"])):
             self.refuse(program, "replay", "s.h5", 0, "--droplet", "0000000", *more, words=[f"task 0 are {paths})"])
 
+    def test_a_replay_repeats_daughters_with_the_springs_of_a_preset(self):
+        """A row states the stiffness of the ancestor's springs, but not its ratio to the line tension."""
+        self.succeed("clogsweep", *FAMILIES, "preset=elastic", "--quiet", "--output", "e.h5")
+        self.assertGreater(len(droplets(self.folder / "e.h5")), 1)
+        self.assertIn("the same bits", self.succeed("clogsweep", "replay", "e.h5", 0).stdout)
+
     def test_a_replay_finds_a_changed_daughter(self):
         def change(file):
             lines = file["droplets"][:]

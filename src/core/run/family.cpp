@@ -90,6 +90,9 @@ RunParameters daughter_parameters(const RunParameters& ancestor, double diameter
                                   int num_vertices) {
   RunParameters run = ancestor;
   run.dp.vertices = num_vertices;
+  // A replayed run knows the stiffness of its springs from its row, but not the ratio from which it follows.
+  if (run.dp.perimeter_spring == PerimeterSpring::rest && run.dp.line_tension > 0)
+    run.dp.perimeter_stiffness_ratio = *run.dp.perimeter_stiffness / run.dp.line_tension;
   run.dp.line_tension = std::min(run.dp.line_tension / (diameter * diameter), nearly_rigid_tension);
   run.dp.area_stiffness.reset();
   run.dp.perimeter_stiffness.reset();
