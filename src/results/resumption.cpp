@@ -132,7 +132,7 @@ std::int64_t adopt(const Resumption& sweep, store::SweepFile table, std::vector<
       continue;
     }
     std::unique_ptr<Entry>& run = are_usual ? runs.place_of(row.task) : known[sweep::identity(row)];
-    // Rows are moved, because the memory of a large sweep suffices for one copy of each row.
+    // Rows are moved, not copied: with a large sweep, there is memory for only one copy of each row.
     if (!run) run = std::make_unique<Entry>(one.record ? std::move(*one.record) : Entry{std::move(row), {}});
   }
   const std::int64_t num_tasks = num_tasks_known(sweep, known, runs);

@@ -1,5 +1,5 @@
-"""Builds a program against an installation, which takes half a minute, and reads the installed handbook. Sphinx takes a
-minute to build the handbook, so only tests/run.sh --all builds it (CLOG_HANDBOOK)."""
+"""Compiles the example own-program against an installation, in half a minute, and reads the installed handbook.
+Sphinx takes a minute to build the handbook, so only tests/run.sh --all builds it (CLOG_HANDBOOK)."""
 
 import json
 import re

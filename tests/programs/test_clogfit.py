@@ -107,7 +107,8 @@ class Mixtures(ProgramTest):
 
 
 class GivenKeys(ProgramTest):
-    """Given numerical keys are columns or words of the table, even if they vary together with others."""
+    """Numerical keys that the user has set are columns of the table, or words above it if all runs share the value,
+    even if they vary together with other keys."""
 
     SETTINGS = ["box=20", "obstacle-density=saturated", "max-time=5", "seeds=1"]
 

@@ -204,7 +204,7 @@ def nearest(attempts: Sequence[Attempt]) -> Attempt:
 
 
 def starts(attempts: Sequence[Attempt]) -> list[tuple[float, float]]:
-    """The places of the best attempts, one for each line tension."""
+    """The parameters (`place`) of the best attempts: at most one for each line tension, and at most NUM_STARTS."""
     best: dict[float, tuple[float, float]] = {}
     for attempt in sorted(attempts, key=lambda attempt: attempt.delta):
         best.setdefault(attempt.place[0], attempt.place)

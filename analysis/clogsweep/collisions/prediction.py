@@ -123,8 +123,8 @@ class Droplets:
         return found
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """The pairs of obstacles that hold a droplet that falls onto the middle between the two obstacles, for each
-        line tension. Pairs with an obstacle that would hold the droplet alone are excluded.
+        """For each line tension, whether each pair of obstacles holds a droplet that falls midway between the two. A
+        droplet that one of the obstacles holds alone does not count.
         @param angles  of the pairs [degrees]"""
         halves = [[(gap + diameter) / 2 * part(math.radians(angle))
                    for part in (math.sin, math.cos)]

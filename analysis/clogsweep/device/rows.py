@@ -36,7 +36,8 @@ class Rows:
     """The resulting posts. Lengths are in droplet diameters."""
 
     device: Device
-    corner: float  # The largest radius of circles in a row.
+    # Radius of the circles of a row, to which corners are rounded; smaller in posts that are too thin for it.
+    corner: float
     farthest: float  # Largest distance of a drawn outline from the circles, which do not fill its corners.
     roughness: float
 
