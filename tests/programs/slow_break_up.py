@@ -2,11 +2,13 @@
 uniformly distributed offsets, and breaks up on those that are less than b from its path."""
 
 import math
+import sys
 import unittest
 
-from support import BIN, SweepTest, table
+from support import BIN, ROOT, SweepTest, table
 
-from clogsweep.collisions import collision
+sys.path.insert(0, str(ROOT / "analysis"))
+from clogsweep.collisions import collision  # noqa: E402
 
 DENSITY = 0.05  # [1/sigma^2]
 KEYS = {"preset": "robust", "vertices": "64", "break-up-neck": "0.08", "self-contact-range": "0.02"}
