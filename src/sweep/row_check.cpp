@@ -345,7 +345,6 @@ std::string family_fault(const RunRow& row) {
       return who + " is not connected to the others";
     if (!has_broken) area += member.diameter * member.diameter;
   }
-  constexpr double round_off = 1e-9;
   return std::abs(area - 1) < round_off
              ? ""
              : named("area of its droplets", area) + " is not that of the ancestor";
