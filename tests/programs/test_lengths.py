@@ -292,7 +292,7 @@ class Lengths(ProgramTest):
                          ("not_exponential equal_distances", 0, None))
         text = self.succeed("clogfit", "lengths", "own.csv").stdout
         self.assertRegex(text, r"9\.68 +xe")
-        self.assertIn("\ne: half of the clogs or more", text)
+        self.assertIn("\ne: at least half of the clogs", text)
 
     def test_what_was_read_is_said_in_words_for_experiments(self):
         self.write("own.csv", "distance [mm],clogged\n10,1\n20,0\n30,0\n")
