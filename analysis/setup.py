@@ -21,7 +21,7 @@ class BuildWithJobs(build_py):
             shutil.copy(source, copy)
 
 
-# The build folder is outside the source tree. So nothing remains in the source tree, and no file of an earlier build
-# gets into the package.
+# The build folder is outside the source tree. So nothing is left in the source tree, and the package contains no file
+# of an earlier build.
 with tempfile.TemporaryDirectory(prefix="clogsweep_build_") as scratch:
     setup(cmdclass={"build_py": BuildWithJobs}, options={"build": {"build_base": scratch}, "egg_info": {"egg_base": scratch}})

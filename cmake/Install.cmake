@@ -32,7 +32,7 @@ install(FILES "${PROJECT_BINARY_DIR}/_installed.py" DESTINATION "${CLOG_PYTHON_D
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 # Messages name pages of the handbook.
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.csv" PATTERN "*.png" PATTERN "*.ipynb" PATTERN "CMakeLists.txt" PATTERN "*.cpp" PATTERN "paper" EXCLUDE)
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.csv" PATTERN "*.png" PATTERN "*.ipynb" PATTERN "CMakeLists.txt" PATTERN "*.cpp" PATTERN "first-curve/sweep.h5" PATTERN "paper" EXCLUDE)
 
 # What a shell completes, from what the programs say of themselves
 
@@ -78,7 +78,7 @@ if(CLOG_HANDBOOK)
   list(APPEND handbook "${PROJECT_SOURCE_DIR}/docs/conf.py" "${PROJECT_SOURCE_DIR}/docs/mended_theme.py")
 
   set(manual "${PROJECT_BINARY_DIR}/man")
-  set(pages clogsweep.1 clogrun.1 clogfit.1 clogsweep-keys.5 clogsweep-columns.5 clogsweep-files.5 clogsweep-exit-codes.7 clogsweep-python.7)
+  set(pages clogsweep.1 clogrun.1 clogfit.1 clogsweep-keys.5 clogsweep-files.5 clogsweep-exit-codes.7 clogsweep-python.7)
   list(TRANSFORM pages PREPEND "${manual}/")
   # Warnings are reported by docs/build.sh.
   add_custom_command(OUTPUT ${pages}

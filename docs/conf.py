@@ -7,6 +7,7 @@ import sys
 
 from docutils import nodes
 from sphinx import addnodes
+from sphinx.errors import ExtensionError
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -17,7 +18,7 @@ release = version = re.search(r"project\(clogsweep\s+VERSION\s+([\d.]+)", (ROOT 
 
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_copybutton"]
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_static", "README.md", "paper", "gallery/tables", "gallery/rows"]
+exclude_patterns = ["_static", "README.md", "examples", "paper", "gallery/tables", "gallery/rows"]
 if tags.has("site"):  # noqa: F821, Sphinx's
     # What man pages need not.
     sys.path.insert(0, str(ROOT / "docs"))
@@ -54,10 +55,21 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
     ("clogrun", "clogrun", "one droplet, watched closely", 1),
     ("clogfit", "clogfit", "clogging lengths and speeds of a sweep", 1),
     ("keys", "clogsweep-keys", "parameters of a run, on the command line and in config files", 5),
-    ("columns", "clogsweep-columns", "columns of the table of runs", 5),
-    ("files", "clogsweep-files", "what clogsweep, clogrun and clogfit write and read", 5),
+    ("files", "clogsweep-files", "files of clogsweep, and columns of the table of runs", 5),
     ("exit-codes", "clogsweep-exit-codes", "how clogsweep, clogrun and clogfit end", 7),
     ("analysis", "clogsweep-python", "figures, films and reports, python3 -m clogsweep", 7)]]
+
+# Pages that became parts of other pages. The site redirects from their old addresses.
+MOVED = {
+    "explanation/limits": "explanation/trust.html",
+    "explanation/open-points": "explanation/model.html#what-the-article-leaves-open",
+    "explanation/predicted": "reference/analysis.html#where-predictions-hold",
+    "explanation/soundness": "explanation/trust.html#sound-droplets",
+    "how-to/lateral-displacement": "how-to/lattice.html#find-the-critical-angle",
+    "how-to/other-arrays": "how-to/own-obstacles.html",
+    "how-to/own-distances": "how-to/compare-sweeps.html#your-own-distances",
+    "reference/columns": "reference/files.html#columns-of-the-table-of-runs",
+}
 
 
 class ForTerminals(SphinxPostTransform):
@@ -129,9 +141,27 @@ def with_plain_search(app, page, template, context, doctree):
         app.add_js_file("search.js", priority=900)
 
 
+def with_moved_pages(app, exception):
+    """Writes a page with a redirect at the old address of every moved page."""
+    if exception or app.builder.format != "html":
+        return
+    for old, new in MOVED.items():
+        name, _, anchor = new.partition("#")
+        page = pathlib.Path(app.outdir, name)
+        if not page.exists():
+            raise ExtensionError(f"MOVED of docs/conf.py: there is no page {name}")
+        if anchor and f'id="{anchor}"' not in page.read_text():
+            raise ExtensionError(f"MOVED of docs/conf.py: {name} has no anchor {anchor}")
+        target = posixpath.relpath(new, posixpath.dirname(old))
+        pathlib.Path(app.outdir, f"{old}.html").write_text(
+            f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>Moved</title>\n'
+            f'<meta http-equiv="refresh" content="0; url={target}">\n<a href="{target}">This page has moved</a>\n')
+
+
 def setup(app):
     app.add_post_transform(ForTerminals)
     if "sphinx.ext.autodoc" in extensions:
         app.connect("autodoc-process-docstring", in_fields)
         app.connect("html-page-context", with_plain_search)
         app.connect("doctree-read", with_links_to_pictures)
+        app.connect("build-finished", with_moved_pages)

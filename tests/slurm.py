@@ -1,5 +1,5 @@
 """Tests sweeps that are jobs of a real Slurm. Slurm warns, requeues or cancels the jobs, or a job loses a node. The
-rows must be those of an undisturbed sweep.
+rows must equal those of an undisturbed sweep.
 
     tests/slurm.sh [slurm.Slurm.test_...]    # also starts the Slurm that these tests need
 """

@@ -15,7 +15,8 @@ from __future__ import annotations
 import importlib
 import os
 
-# Type checkers take TYPE_CHECKING as true. Importing it from `typing` would take longer than importing this module.
+# A type checker assumes that TYPE_CHECKING is true. Importing it from `typing` would take longer than importing this
+# module.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any

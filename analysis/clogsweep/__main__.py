@@ -25,6 +25,7 @@ COMMANDS = {
     "compare": "ratios of the clogging lengths of two sweeps",
     "clogs": "the clogs of a sweep on one sheet",
     "predict": "the clogging length of stiff droplets in an array in which none has run",
+    "daughters": "the droplets into which those of a sweep break up, and their sizes where they leave",
     "collision": "which droplets break up on a single obstacle",
     "droplet": "one run as a picture or a film",
     "circles": "a drawing of a device, or a picture of one, as a file of circles",

@@ -34,7 +34,8 @@ bool is_key(const std::string& name) {
   return std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) { return key.name == name; });
 }
 
-/// Name of the option that collects surplus words. It contains a blank, so nobody types it as an option.
+/// Name of the option that collects surplus words. It contains a blank, so a user cannot give it as an
+/// option.
 constexpr const char* surplus_words = "surplus words";
 
 /// Keys that a newcomer needs, in a useful order.
@@ -50,13 +51,13 @@ bool is_assignment(const std::string& word) {
          word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == equals;
 }
 
-/// Whether a word that names no file looks like `Key=value` with an unknown key.
+/// Whether a word looks like `Key=value` with an unknown key, and is not the name of a file.
 bool begins_like_key(const std::string& word) {
   const auto equals = word.find('=');
   return equals != std::string::npos && equals > 0 && word.find_first_of("./ ") > equals;
 }
 
-/// The command of another program that has this name; empty if there is none.
+/// The command of another program with this name; empty if there is none.
 std::string command_elsewhere(const std::string& word) {
   static const std::map<std::string_view, std::string_view> programs = {
       {"compare", "clogfit"},   {"curve", "clogfit"},     {"lengths", "clogfit"},  {"units", "clogfit"},
@@ -203,8 +204,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
     for (const auto& known : group->options()) names.push_back(known->long_name());
   const std::string option = excerpt(word.substr(0, word.find('=')));
   const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
-  // If the user typed no word that begins like this, parse() added the dashes to `key=value`, and the message
-  // omits them.
+  // If the user typed no word with this beginning, parse() added the dashes to `key=value`. The message then
+  // omits the dashes.
   const bool has_dashes =
       std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(word); });
   std::vector<std::string> meant = sweep::meant_names(bare, names);
@@ -215,8 +216,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
                              : fmt::format("; did you mean {}?", joined(meant, " or "))));
 }
 
-/// Boost would report such lines, too. But Boost 1.74 replaces %names% in its message, and this replacement
-/// never ends if the line itself contains such a name.
+/// Boost would report such lines, too. But Boost 1.74 replaces %names% in its message, and if the line
+/// contains such a name, this replacement never ends.
 static void refuse_lines_without_value(const std::string& path, const std::string& text) {
   std::istringstream lines(text);
   int number = 0;

@@ -39,7 +39,7 @@ bool is_unit(const std::string& unit) {
   return unit == droplet_diameters || console::metres_of(unit).has_value();
 }
 
-/// @throws Error if one of them is not a unit of length
+/// @throws Error if one of the words is not a unit of length
 bool is_same_unit(const std::string& unit, const std::string& other) {
   if (unit == droplet_diameters || other == droplet_diameters) return unit == other;
   return metres_in(unit) == metres_in(other);
@@ -50,7 +50,7 @@ struct Scale {
   std::string unit;  ///< unit of the numbers; empty: droplet diameters
   double droplet_metres = 0;
 
-  /// Rounds to few enough digits that a file in other units gives the same bits.
+  /// Rounds to a few digits, so that a file in other units gives the same bits.
   double in_diameters(double number) const {
     if (unit.empty()) return number;
     constexpr int digits = 13;
@@ -86,7 +86,7 @@ void read_scale(const std::string& comment, Scale& scale, bool are_below_circles
 struct Columns {
   int x = 0, y = 1, diameter = 2, radius = -1;
   std::vector<std::string> header;  ///< empty: the file has no header
-  std::string unit;                 ///< unit that the header names
+  std::string unit;                 ///< unit of the lengths, as named in the header
 };
 
 /// Stores the column that a cell of the header names.
@@ -215,8 +215,8 @@ Obstacle parse_circle(console::TableLine line, const Columns& columns, const Sca
   return circle;
 }
 
-/// Parts of a name like posts.csv@0.8mm: the file, and the diameter of the droplet to which its circles are
-/// scaled [m].
+/// Parts of a name like posts.csv@0.8mm: the file, and the droplet's diameter [m], to which the circles are
+/// scaled.
 std::pair<std::string, std::optional<double>> parts_of(const std::string& name) {
   const auto at = name.rfind('@');
   std::error_code none;

@@ -30,9 +30,9 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
   return columns;
 }
 
-/// The value of a key in a cell. A comma is a decimal comma unless commas separate the cells. In a column
-/// with an empty cell, pandas writes integers as 64.0 or 64,0. @throws Error if a comma may be decimal or
-/// part of a list, or if other numbers have decimal points
+/// The value of a key in a cell. A comma is a decimal comma unless commas separate the cells. pandas writes
+/// the integers of a column with an empty cell as 64.0 or 64,0. @throws Error if it is not clear whether a
+/// comma is decimal or separates the items of a list, or if other numbers have decimal points
 std::string value_of(const sweep::Key& key, const std::string& cell, char separator,
                      console::DecimalCommas& decimal_commas) {
   const bool is_integer = key.kind == ValueKind::integer;

@@ -23,7 +23,7 @@ using namespace console;
 
 namespace {
 
-/// Memory that the libraries need before any work starts: with 8 MB some of them crashed.
+/// Memory that the libraries need before any work starts. With 8 MB some libraries crashed.
 constexpr std::size_t least_memory = 32'000'000;
 
 }  // namespace

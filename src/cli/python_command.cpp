@@ -18,7 +18,7 @@ namespace {
 
 const std::string python_path = "PYTHONPATH";
 
-/// Value of PYTHONPATH with which Python looks for modules in this folder first.
+/// A value of PYTHONPATH that lets Python search this folder for modules first.
 std::string with_others(const std::filesystem::path& folder) {
   const char* others = std::getenv(python_path.c_str());
   return others && *others ? folder.string() + ":" + others : folder.string();
@@ -41,7 +41,7 @@ void become_python(const std::string& name, const std::filesystem::path& module,
   console::flush_output();
   setenv("CLOG_CALLED_AS", name.c_str(), 1);
   setenv(python_path.c_str(), with_others(module.parent_path()).c_str(), 1);
-  setenv("PYTHONSAFEPATH", "1", 1);  // no modules from the user's working folder
+  setenv("PYTHONSAFEPATH", "1", 1);  // Python then finds no modules in the user's working folder
   arguments.insert(arguments.begin(), {CLOG_PYTHON_COMMAND, "-m", "clogsweep"});
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);

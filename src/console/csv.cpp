@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r";
 
-/// U+00A0, U+202F and U+2007, which keep numbers and units on one line, and U+FEFF of files that were joined.
+/// U+00A0, U+202F and U+2007 keep numbers and units on one line. U+FEFF occurs in files that were joined.
 constexpr std::string_view other_blanks[] = {"\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x87", "\xef\xbb\xbf"};
 
 /// Whether each byte above ASCII belongs to a character of UTF-8.
@@ -118,12 +118,12 @@ class Splitter {
   }
 };
 
-/// Error words of spreadsheets that end neither with ! nor with ?, in lower case. Most of them mean that a
-/// value is not available, in the languages of Excel and LibreOffice.
+/// Error words of spreadsheets that end neither with ! nor with ?, in lower case. Most of them say, in the
+/// languages of Excel and LibreOffice, that a value is not available.
 constexpr std::string_view other_error_words[] = {"#n/a", "#na",  "#nv",  "#n/d",      "#n/b",
                                                   "#i/t", "#Н/Д", "#yok", "#hiÁnyzik", "#getting_data"};
 
-/// Cells that Excel shows as ### because their column is too narrow, if other cells follow.
+/// Whether the cell consists of #. Excel shows ### for values that are wider than their column.
 bool is_row_of_hashes(std::string_view cell) {
   constexpr std::size_t fewest = 2;
   return cell.size() >= fewest && cell.find_first_not_of('#') == std::string_view::npos;
@@ -154,7 +154,7 @@ void refuse_error_words(const std::vector<std::string>& cells) {
     if (is_error_word(cells[i]) || is_row_of_hashes(cells[i])) refuse_error_word(cells[i], i);
 }
 
-/// @throws Error  if a line that begins with # is a line of the table whose first cell is an error of a
+/// @throws Error  if a line that begins with # is a line of the table, and its first cell is an error of a
 /// spreadsheet
 void refuse_lost_line(std::string_view comment, char separator) {
   const std::string cell = trimmed(first_cell(comment, separator));
@@ -174,13 +174,13 @@ void name_place(const std::string& path, int number, const std::function<void()>
   }
 }
 
-/// Calls each() for blank lines of a table of one column, where an empty cell is a blank line.
+/// Calls each() for blank lines of a table with one column: in such a table, a blank line is an empty cell.
 void give_empty_cells(const std::vector<int>& numbers,
                       const std::function<void(const TableLine& line)>& each) {
   for (const int number : numbers) each({.number = number, .cells = {""}, .separator = ' '});
 }
 
-/// The comment with `units = um` written as `units=um`.
+/// Replaces `units = um` by `units=um` in a comment.
 std::string without_blanks_around_equals(std::string comment) {
   for (auto at = comment.find('='); at != std::string::npos; at = comment.find('=', at + 1)) {
     while (at + 1 < comment.size() && comment[at + 1] == ' ') comment.erase(at + 1, 1);
@@ -276,7 +276,7 @@ void read_table(const std::string& path, const std::function<void(const TableLin
   std::istringstream file(read_table_text(path));
   TableLine row{.number = 0, .cells = {}, .separator = '\0'};
   bool has_one_column = false;
-  std::vector<int> blank_lines;  // numbers of those since the last line of the table
+  std::vector<int> blank_lines;  // numbers of the blank lines since the last line of the table
   for (std::string line; std::getline(file, line);) {
     ++row.number;
     const std::string text = trimmed(line);

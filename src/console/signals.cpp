@@ -14,7 +14,7 @@ void look_at_hangup() {
   hangup_was_ignored = sigaction(SIGHUP, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// Looks before the initialisation of shared libraries, in which UCX, a library of Open MPI, takes over
+/// Runs before the initialisation of shared libraries, because there UCX, a library of Open MPI, takes over
 /// SIGHUP.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const look_first)() = look_at_hangup;
 

@@ -20,11 +20,11 @@ StatusLine::StatusLine(std::ostream& out, Screen screen) : out_(out), screen_(sc
 
 bool StatusLine::is_due() const {
   const double interval = screen_ == Screen::terminal ? 0.2 : 10;
-  return std::chrono::duration<double>(Clock::now() - last_renewal_).count() >= interval;
+  return std::chrono::duration<double>(Clock::now() - last_drawn_).count() >= interval;
 }
 
-void StatusLine::renew(const std::string& text) {
-  last_renewal_ = Clock::now();
+void StatusLine::redraw(const std::string& text) {
+  last_drawn_ = Clock::now();
   text_ = text;
   if (screen_ == Screen::terminal) out_ << to_left_edge << text << clear_rest << std::flush;
   if (screen_ == Screen::plain) out_ << text << std::endl;
@@ -36,7 +36,7 @@ void StatusLine::say(const std::string& text) {
     return;
   }
   out_ << to_left_edge << text << clear_rest << '\n';
-  renew(text_);
+  redraw(text_);
 }
 
 void StatusLine::keep() {

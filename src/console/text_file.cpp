@@ -27,7 +27,7 @@ constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   throw Error("cannot read " + path + " (" + reason + "); give a text file");
 }
 
-/// @param error  as in errno
+/// @param error  a value of errno
 [[noreturn]] void refuse(const std::string& path, int error) {
   if (error == ENOENT) throw Error("cannot read " + path + " (no such file); check the name");
   refuse(path, std::strerror(error));

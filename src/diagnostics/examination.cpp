@@ -39,7 +39,7 @@ int number_in(const char* name) {
 std::optional<Finding> why_not_alone(int num_ranks) {
   if (num_ranks > 1) return {};
   constexpr const char* of_open_mpi = "OMPI_COMM_WORLD_SIZE";
-  const bool by_mpirun = is_set(of_open_mpi) || is_set("MPI_LOCALNRANKS");  // the latter is MPICH's
+  const bool by_mpirun = is_set(of_open_mpi) || is_set("MPI_LOCALNRANKS");  // MPI_LOCALNRANKS is set by MPICH
   if (const int tasks = number_in("SLURM_NTASKS"); tasks > 1 && !by_mpirun)
     return Finding{fmt::format("one rank in a Slurm allocation of {} tasks", tasks),
                    "srun cannot start this MPI's ranks together: use mpirun, as jobs/slurm.sh does, or "
@@ -109,7 +109,7 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
 }
 
 Finding memory(const std::string& host, const std::vector<const RankFacts*>& ranks) {
-  constexpr double needed = 100e6;  // generous memory of a rank with an array of 500 sigma
+  constexpr double needed = 100e6;  // an upper bound of the memory of a rank with an array of 500 sigma
   const double available = ranks.front()->memory / static_cast<double>(ranks.size());
   const std::string what = fmt::format("{}: {:.3g} GB of memory per rank", host, available / 1e9);
   if (available < needed) return {what, "start fewer ranks per host, or use a smaller box"};
@@ -134,7 +134,7 @@ Finding speed(const std::vector<RankFacts>& ranks) {
           "look for other programs on those cores, and for bound ranks"};
 }
 
-/// Tries the file operations of a sweep in the folder of its output, on another file.
+/// Tests the file operations of a sweep in the folder of its output, with a temporary file.
 Finding folder(const std::string& output) {
   namespace fs = std::filesystem;
   const fs::path parent = fs::path(output).parent_path();

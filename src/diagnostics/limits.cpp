@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The number behind a name in lines of `name number ...`.
+/// The number after this name, in lines of the form `name number ...`.
 std::optional<double> named_number(const fs::path& path, const std::string& wanted) {
   std::ifstream file(path);
   std::string name;
@@ -33,7 +33,7 @@ std::optional<double> only_number(const fs::path& path) {
   std::ifstream file(path);
   double number = 0;
   if (file >> number) return number;
-  return {};  // no such file, or no limit ("max")
+  return {};  // there is no such file, or no limit ("max")
 }
 
 /// Control groups of the process, from the innermost outwards. In a container, the innermost groups may be
@@ -45,7 +45,7 @@ std::vector<fs::path> control_groups(const fs::path& root) {
     if (line.starts_with("0::/")) own = line.substr(3);
   std::vector<fs::path> groups = {root / "sys/fs/cgroup"};
   for (const fs::path& name : fs::path(own).relative_path()) {
-    if (name == "..") break;  // outside of what this container sees
+    if (name == "..") break;  // this group is outside of the container
     groups.push_back(groups.back() / name);
   }
   return groups;

@@ -23,7 +23,7 @@ Interval chi_squared_interval(double total_distance, double degrees_of_freedom, 
   return {2 * total_distance / quantile(complement(chi2, tail)), 2 * total_distance / quantile(chi2, tail)};
 }
 
-/// A droplet pushed back on release counts as not moved; NaN stays NaN.
+/// A droplet that was pushed back at its release counts as not moved; NaN stays NaN.
 double way(const Observation& run) { return run.distance < 0 ? 0 : run.distance; }
 
 /// sqrt(2 (x + exp(-x) - 1)) with the sign of x. For small x its series avoids cancellation.
@@ -33,8 +33,8 @@ double signed_root(double x) {
   return std::copysign(std::sqrt(2 * (x + std::expm1(-x))), x);
 }
 
-/// In units of the estimate, u = lambda/(S/d), the likelihood falls by 2d (log u + 1/u - 1) = d
-/// signed_root(log u)^2.
+/// In units of the estimate, u = lambda/(S/d), the log-likelihood falls by d (log u + 1/u - 1). Twice this is
+/// d signed_root(log u)^2.
 Interval profile_interval(const CloggingLength& fit, double confidence) {
   const double allowed = normal_deviate(confidence) / std::sqrt(static_cast<double>(fit.num_clogs));
   const auto length_at = [&](double root, double from, double to) {
@@ -44,7 +44,7 @@ Interval profile_interval(const CloggingLength& fit, double confidence) {
         tools::toms748_solve(excess, from, to, tools::eps_tolerance<double>(), most_steps);
     return fit.length * std::exp((low + high) / 2);
   };
-  // |signed_root(x)| exceeds |x| for x < 0 and is smaller for x > 0; at x = 1 + y^2/2 it exceeds y.
+  // For x < 0, |signed_root(x)| exceeds |x|; for x > 0 it is smaller; at x = 1 + y^2/2 it exceeds y.
   return {length_at(-allowed, -allowed, 0), length_at(allowed, allowed, 1 + allowed * allowed / 2)};
 }
 
@@ -114,9 +114,9 @@ double least_squares_length(std::span<const Observation> runs) {
     }
     return sum;
   };
-  // Bounds of the fitted length. The upper bound is the length that a straight line to a single clog in this
-  // number of runs would give, with a margin; the lower bound is much smaller than the distance of the first
-  // clog.
+  // Bounds of the fitted length. The upper bound is the length for a single clog among all runs, with a
+  // margin, if P(r) falls to it in a straight line. The lower bound is much smaller than the distance of the
+  // first clog.
   const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
   const double high = std::log(10 * static_cast<double>(runs.size()));

@@ -15,9 +15,9 @@ struct Ends {
   double all, own;  ///< number of ends by any cause, and by the given cause
 };
 
-/// Sums over all distances so far from which the variance of F_c follows. With g = d/(n (n - d)) for all
-/// causes and h = P d_c/n^2, the variance is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, with
-/// F_s the value of F_c at the term's distance and F the present value.
+/// Sums over all distances so far, for the variance of F_c. For all causes, let g = d/(n (n - d)), and let h
+/// = P d_c/n^2. The variance is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, with F_s the
+/// value of F_c at the term's distance and F the present value.
 struct VarianceSums {
   double g = 0, F_g = 0, F2_g = 0;
   double own = 0;
@@ -25,7 +25,7 @@ struct VarianceSums {
 
   /// @param before  P before these ends @param F  after them
   void add(double before, double F, const Ends& ends) {
-    // If all end here, F no longer grows, and (F - F_s)^2 g stays zero.
+    // If all runs at risk end here, F no longer grows, and (F - F_s)^2 g stays zero.
     if (ends.all < ends.at_risk) {
       const double g_s = ends.all / (ends.at_risk * (ends.at_risk - ends.all));
       g += g_s, F_g += F * g_s, F2_g += F * F * g_s;

@@ -25,7 +25,7 @@ Interval unpaired_interval(double ratio, const CloggingLength& here, const Clogg
   return {ratio / quantile(complement(f, tail)), ratio / quantile(f, tail)};
 }
 
-/// Sums over pairs, from which the sums without one pair follow.
+/// Sums over pairs. The sums without one pair follow from them.
 struct Sums {
   double way_here = 0, way_there = 0;
   double clogs_here = 0, clogs_there = 0;
@@ -40,7 +40,7 @@ struct Sums {
   double log_there() const { return std::log(way_there / clogs_there); }
 };
 
-/// Variances and covariance of the jackknife's estimates, as mean square errors.
+/// Variances and covariance of the estimates of the jackknife, as mean square errors.
 struct Scatter {
   double here = 0, there = 0, both = 0;
 
@@ -72,7 +72,7 @@ Scatter scatter_of(std::span<const Pair> pairs, const Sums& all) {
   return scatter;
 }
 
-/// Whether a correlation of this number of pairs is positive, at a significance level of 2.5 %.
+/// Whether a correlation over this number of pairs is positive at a significance level of 2.5 %.
 bool is_positive(double correlation, double num_pairs) {
   constexpr double error = 0.025;
   const double t = correlation * std::sqrt((num_pairs - 2) / std::max(1 - correlation * correlation, 1e-12));

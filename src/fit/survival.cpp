@@ -15,12 +15,12 @@
 namespace clog::fit {
 namespace {
 
-/// Fraction of the mean distance to which the test raises shorter distances, because Weibull's law excludes
-/// zero.
+/// Weibull's law excludes zero, so the test raises all distances to at least this fraction of the mean
+/// distance.
 constexpr double shortest_share = 1e-3;
 
-/// An interval that contains the root of a falling function, found by doubling and halving; nullopt if there
-/// is no root.
+/// An interval that contains the root of a decreasing function, found by doubling and halving; nullopt if
+/// there is no root.
 template <class Function>
 std::optional<std::pair<double, double>> bracket(const Function& falling) {
   constexpr int most_doublings = 200;  // 2^200 exceeds any ratio of two different doubles' logarithms
@@ -33,10 +33,10 @@ std::optional<std::pair<double, double>> bracket(const Function& falling) {
   return std::pair(low, high);
 }
 
-/// Sums over runs with x = r/(longest r), so that no power overflows.
+/// Sums over runs; x = r/(longest r), so that no power overflows, and k is the shape.
 struct PowerSums {
-  double power = 0;      ///< sum x^k
-  double power_log = 0;  ///< sum x^k log x
+  double power = 0;      ///< sum of x^k
+  double power_log = 0;  ///< sum of x^k log x
 };
 PowerSums power_sums(const std::vector<double>& log_x, double shape) {
   PowerSums sums;
@@ -48,9 +48,10 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
   return sums;
 }
 
-/// Distances of all runs for the test: x = r/(longest r), at least a fraction of their mean.
+/// Distances of all runs for the test, x = r/(longest r). They are raised to at least a fraction of their
+/// mean.
 struct LogWays {
-  double longest = 0;         ///< [sigma]
+  double longest = 0;         ///< longest distance [sigma]
   std::vector<double> log_x;  ///< log x of every run
   double total = 0;           ///< sum of all x
   double clog_logs = 0;       ///< sum of log x over clogs
@@ -91,7 +92,7 @@ std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, doub
             [](const Observation& a, const Observation& b) { return a.distance < b.distance; });
   std::vector<SurvivalStep> steps;
   double probability = 1;
-  double variance_sum = 0;  // Greenwood's, of log P
+  double variance_sum = 0;  // sum in Greenwood's variance of log P
   for (std::size_t begin = 0; begin < sorted.size();) {
     std::size_t end = begin;
     int num_clogs = 0;
@@ -129,7 +130,8 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
     test.p_value = 0;
     return test;
   }
-  // The derivative of the profile likelihood by the shape; it falls from +infinity to a negative number.
+  // The derivative of the profile likelihood with respect to the shape. It falls from +infinity to a negative
+  // number.
   const auto score = [&](double shape) {
     const PowerSums sums = power_sums(ways.log_x, shape);
     return 1 / shape + ways.clog_logs / d - sums.power_log / sums.power;

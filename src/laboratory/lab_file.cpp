@@ -23,7 +23,7 @@ namespace {
 
 using Entries = std::map<std::string, std::string>;
 
-/// The quantity that each key gives; the ratio is a plain number.
+/// The kind of quantity of each key; the ratio is a plain number.
 const std::map<std::string, std::string>& known_keys() {
   static const std::map<std::string, std::string> keys = {{"diameter", "length"},
                                                           {"thickness", "length"},
@@ -117,7 +117,7 @@ void scale_speed(Laboratory& lab, const Entries& entries) {
 
 Laboratory laboratory_of(const Entries& entries) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  constexpr double octane = 703, water = 997;  // densities in the article [kg/m^3]
+  constexpr double octane = 703, water = 997;  // densities in Cheng et al. [kg/m^3]
   Laboratory lab;
   lab.experiment = {.diameter = value_of(entries, "diameter", 0),
                     .terminal_speed = value_of(entries, "speed", 0),

@@ -27,12 +27,12 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A drop on a wall that it does not wet.
 struct Puddle {
-  double height = 0, area = 0, moment = 0;  ///< moment: of depth below the apex
+  double height = 0, area = 0, moment = 0;  ///< `moment` is that of the depth below the apex
 };
 
-/// Integrates the equation of Young and Laplace along the interface by the fourth-order Runge-Kutta rule:
-/// phi' = kappa_0 + z/Gamma, x' = cos(phi), z' = sin(phi), area' = 2 x z'. Here z is the depth below the
-/// apex, and phi the angle of the slope, from 0 at the apex to pi at the wall.
+/// Integrates the Young-Laplace equation along the interface by the fourth-order Runge-Kutta rule: phi' =
+/// kappa_0 + z/Gamma, x' = cos(phi), z' = sin(phi), area' = 2 x z'. Here z is the depth below the apex, and
+/// phi the angle of the slope, from 0 at the apex to pi at the wall.
 Puddle puddle(double line_tension, double apex_curvature) {
   using State = Eigen::Array<double, 5, 1>;  // phi, x, z, area, moment
   // The interface bends over a length of sqrt(Gamma) at a puddle's rim, and over a radius of 1/2 elsewhere.
@@ -54,7 +54,7 @@ Puddle puddle(double line_tension, double apex_curvature) {
   return {.height = y[2], .area = y[3], .moment = y[4]};
 }
 
-/// Root of an increasing or decreasing function of a logarithm.
+/// Root of a monotonic function of a positive variable. The search uses the logarithm of the variable.
 template <class Function>
 double root(Function function, double low, double high) {
   std::uintmax_t most_steps = 200;
@@ -101,7 +101,8 @@ Scales scales_of(const Laboratory& lab) {
                 .line_tension_experiment = at.line_tension(),
                 .line_tension = lab.tension_ratio * at.line_tension(),
                 .terminal_speed = is_speed_known ? at.reduced_terminal_speed() : unknown,
-                .line_tension_of_cell = at.interfacial_tension * lab.thickness};
+                .line_tension_of_cell = at.interfacial_tension * lab.thickness,
+                .break_up_neck = lab.thickness / at.diameter};
   scales.capillary_number = units::droplet_mass * units::gravity / scales.line_tension;
   scales.sag = std::isnan(scales.line_tension) ? unknown : sag_on_wall(scales.line_tension);
   scales.wall_stiffness = wall_stiffness_of_sag(scales.sag);
@@ -110,7 +111,7 @@ Scales scales_of(const Laboratory& lab) {
 
 namespace {
 
-/// Four digits, so that runs do not depend on more digits than a measurement has. Empty if unknown.
+/// The value with four digits, because a measurement has no more. Empty if unknown.
 std::string rounded_text(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : ""; }
 
 }  // namespace
@@ -151,7 +152,7 @@ std::string in_model_units(const std::string& key, const std::string& text, cons
     try {
       if (unit == units.end()) throw Error("numbers have no unit here");
       const auto& [quantity, size] = unit->second;
-      constexpr int digits = 13;  // as many as for circles in a file
+      constexpr int digits = 13;  // the number of digits of circles in a file
       converted += its_unit == "sigma" || its_unit == "/sigma^2"
                        ? number
                        : fmt::format("{:.{}g}", to_si(number + its_unit, quantity) / size, digits);

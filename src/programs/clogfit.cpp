@@ -94,7 +94,8 @@ void set_row_angle(const std::string& text, std::vector<results::Group>& groups)
   for (results::Group& group : groups) group.row_angle = angle;
 }
 
-/// @throws Error if there is no device, or if a line is behind the exit of one, where no droplet is followed
+/// @throws Error if there is no device, or if a line is behind the exit of a device, because droplets are not
+/// followed there
 void require_lines_in_devices(const std::string& text, const std::vector<double>& lines,
                               const std::vector<results::Group>& groups) {
   bool is_any = false;
@@ -128,9 +129,10 @@ int clogfit(int argc, const char* const* argv) {
       .option(
           "pool",
           "join groups that differ only in these keys: max-time, boxes, or both with a comma between them")
-      .option("lines",
-              "x1,x2,...: count the droplets that passed these lines across a device, instead of the rows of "
-              "its posts [sigma]")
+      .option(
+          "lines",
+          "x1,x2,...: lines across a device at which droplets that passed are counted; by default at every "
+          "row of posts [sigma]")
       .option("row-angle", "tilt of the rows of user-supplied circles from the flow towards +y [degrees]")
       .option("dwell", "droplets that rest for this time count as clogged [t0]")
       .option("mixture",
@@ -153,7 +155,7 @@ int clogfit(int argc, const char* const* argv) {
           "no place for '{}' (clogfit reads files; clogsweep select takes some rows of one)", path));
   }
   const store::SweepFile sweep = results::read_together(paths);
-  if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; start its sweep, or resume it");
+  if (sweep.rows.empty()) throw Error("no runs yet in " + joined(paths) + "; start or resume the sweep");
   for (const char* option : {"dwell", "mixture"})
     if (line.has(option) && std::ranges::none_of(sweep.rows, results::has_clogging_length))
       throw Error(fmt::format(

@@ -35,11 +35,11 @@ constexpr const char* compare_usage =
   clogfit compare own.csv sweep.h5 --lab lab.cfg      measured distances (see clogfit lengths) and simulated ones
   clogfit compare own.csv --by 'surfactant [mM]'      groups of one table of measured distances
 
-Every file is compared with the first file. With --by KEY, every value of KEY is compared with the smallest value. All
-other parameters are the same on both sides of a comparison. Two runs of the same seed form a pair: they met the same
-obstacles. If the two lengths are correlated, the interval of their ratio comes from the pairs and is narrower than for
-two independent lengths. The interval comes from the numbers of clogs if fewer than ten pairs differ, if the correlation
-is uncertain, or if --by changes the array, so that equal seeds share no obstacles.
+Each file's length is divided by the first file's. With --by KEY, the length at each value of KEY is divided by that at
+the smallest value. Only runs with equal other parameters are compared. Two runs with the same seed form a pair, because
+they met the same obstacles. If the two lengths are correlated, the interval of their ratio comes from the pairs, and is
+narrower than for two independent lengths. The interval comes from the numbers of clogs if fewer than ten pairs differ,
+if the correlation is uncertain, or if --by changes the array, so that equal seeds share no obstacles.
 
 Droplets of several sizes or tilts (see clogfit units) are compared with droplets of the same size and tilt, and their
 lengths are printed in mm.
@@ -104,7 +104,7 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
   if (line.has("by")) {
     if (paths.size() > 1)
       throw Error(
-          "no place for --by (several files of measured distances are compared with each other); give one "
+          "no place for --by (several files are compared with each other, not groups of one table); give one "
           "table");
     return results::compare_distances(
         results::tables_of_values(results::read_distances(paths[0], results::names_of_comparisons()),
@@ -112,7 +112,8 @@ results::Comparisons compare_measured(const cli::CommandLine& line, const std::v
         confidence, std::nullopt);
   }
   if (paths.size() < 2)
-    throw Error("nothing to compare this table with; give --by and a column, a sweep, or another table");
+    throw Error(
+        "nothing to compare this table with; give --by COLUMN, or a second file (a sweep or a table)");
   std::vector<results::DistanceTable> tables(paths.size());
   std::vector<std::string> asked;
   for (std::size_t i = 0; i < paths.size(); ++i)
@@ -150,7 +151,7 @@ void draw(const cli::CommandLine& line, const std::vector<std::string>& paths) {
 int clogfit_compare(int argc, const char* const* argv) {
   cli::CommandLine line("clogfit compare", compare_usage);
   line.words("file", "sweep files")
-      .option("by", "key whose values are compared with each other")
+      .option("by", "key; its values are compared with each other")
       .option(
           "within",
           "clogs of a pair within this distance are at the same place (half the sum of obstacle diameter and "

@@ -45,10 +45,9 @@ int clogfit_lengths(int argc, const char* const* argv) {
   line.word("file", "table of distances (CSV)")
       .option("format", "text, csv or json", "text")
       .option("confidence", "confidence level of the intervals", "0.95")
-      .option(
-          "from-distance",
-          "count distances only from this one on; droplets that ended before it are excluded [mm, or sigma "
-          "if the table is in sigma]")
+      .option("from-distance",
+              "count distances only from this distance on; droplets that ended before it are excluded [mm, "
+              "or sigma if the table is in sigma]")
       .option("lab",
               "file that describes the laboratory, see clogfit units; the diameter in this file is sigma");
   if (!cli::parse_command(line, argc, argv)) return console::exit_success;

@@ -96,12 +96,15 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
        equals("Gamma_exp", scales.line_tension_experiment)},
       {fmt::format("line tension of the model, {} Gamma_exp", console::plain(lab.tension_ratio)), "",
        equals("Gamma", scales.line_tension)},
-      {"soft disk that sags as far on a flat wall", with_unit(scales.sag * scales.length / milli, "mm"),
+      {"soft disk with the droplet's sag on a flat wall", with_unit(scales.sag * scales.length / milli, "mm"),
        equals("E_w", scales.wall_stiffness)},
       {"capillary number at the terminal speed", "", equals("Ca", scales.capillary_number)}};
-  if (!std::isnan(lab.thickness))
+  if (!std::isnan(lab.thickness)) {
     lines.push_back({"line tension of the cell, tension times thickness",
                      with_unit(scales.line_tension_of_cell / (milli * milli), "uN"), ""});
+    lines.push_back({"width of a neck that breaks: the cell's thickness",
+                     with_unit(lab.thickness / milli, "mm"), equals("break-up-neck", scales.break_up_neck)});
+  }
   return lines;
 }
 
@@ -121,16 +124,17 @@ struct Conversion {
 };
 std::vector<Conversion> conversions(const Laboratory& lab, const Scales& scales) {
   const auto times = [](double unit) { return [unit](double model) { return model * unit; }; };
-  return {{"length", "r/sigma", "length_mm", "length", "mm", times(scales.length / milli)},
-          {"time", "t/t0", "time_s", "time", "s", times(scales.time)},
-          {"line-tension", "Gamma", "tension_mN_per_m", "interfacial tension at this tilt", "mN/m",
-           times(scales.tension / milli)},
-          {"line-tension", "Gamma", "angle_degrees", "or tilt with this tension", "deg",
-           [&lab](double model) { return laboratory::tilt_of(model, lab) / degree; }, why_no_tilt(lab)},
-          {"terminal-speed", "V_t", "speed_mm_per_s", "terminal speed", "mm/s",
-           times(scales.length / scales.time / milli)},
-          {"wall-stiffness", "E_w", "line_tension_of_equal_sag", "Gamma of the droplet that sags as far", "",
-           [](double model) { return laboratory::line_tension_of_sag(std::numbers::pi / (16 * model)); }}};
+  return {
+      {"length", "r/sigma", "length_mm", "length", "mm", times(scales.length / milli)},
+      {"time", "t/t0", "time_s", "time", "s", times(scales.time)},
+      {"line-tension", "Gamma", "tension_mN_per_m", "interfacial tension at this tilt", "mN/m",
+       times(scales.tension / milli)},
+      {"line-tension", "Gamma", "angle_degrees", "or tilt with this tension", "deg",
+       [&lab](double model) { return laboratory::tilt_of(model, lab) / degree; }, why_no_tilt(lab)},
+      {"terminal-speed", "V_t", "speed_mm_per_s", "terminal speed", "mm/s",
+       times(scales.length / scales.time / milli)},
+      {"wall-stiffness", "E_w", "line_tension_of_equal_sag", "Gamma of the droplet with this disk's sag", "",
+       [](double model) { return laboratory::line_tension_of_sag(std::numbers::pi / (16 * model)); }}};
 }
 
 Line line_of(const Conversion& conversion, double model) {
@@ -138,7 +142,7 @@ Line line_of(const Conversion& conversion, double model) {
           fmt::format("{} = {}", conversion.symbol, console::plain(model))};
 }
 
-/// Advises a cheaper model for a nearly rigid droplet; empty for others.
+/// Advises a cheaper model for a nearly rigid droplet; empty for other droplets.
 std::string advice_of(const Scales& scales) {
   if (!(scales.line_tension > nearly_rigid_tension)) return "";
   return fmt::format(
@@ -148,7 +152,7 @@ std::string advice_of(const Scales& scales) {
       console::plain(scales.wall_stiffness), console::plain(nearly_rigid_tension));
 }
 
-/// Rounds all numbers, which are results of conversions, to twelve digits: 30, not 29.999999999999996.
+/// Rounds all numbers to twelve digits, because they are results of conversions: 30, not 29.999999999999996.
 Json rounded(Json document) {
   for (Json& value : document)
     if (value.is_structured())
@@ -176,7 +180,8 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
           {"wall_stiffness", scales.wall_stiffness},
           {"terminal_speed", scales.terminal_speed},
           {"capillary_number", scales.capillary_number},
-          {"line_tension_of_cell_uN", scales.line_tension_of_cell / (milli * milli)}};
+          {"line_tension_of_cell_uN", scales.line_tension_of_cell / (milli * milli)},
+          {"break_up_neck", scales.break_up_neck}};
 }
 
 /// A line of the table of several droplets.

@@ -32,6 +32,7 @@ constexpr const char* clogrun_usage = R"(clogrun follows one droplet and records
   clogrun channel --output run.h5 orifice=0.7 line-tension=1.08 near-wall-drag=0.07 terminal-speed=0.032
   clogrun array --output run.h5 line-tension=0.3 max-time=3000 --polygon-interval 5 --frames film
   clogrun replay sweep.h5 12 --output run.h5 --polygon-interval 1     replays a run of a sweep
+  clogrun replay sweep.h5 12 --droplet 01 --output run.h5             the same for one of its daughters
   clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks on a flat wall
 
 clogrun array with the keys and the seed of a row of a sweep repeats the run of this row, bit for bit.
@@ -53,6 +54,9 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
           "to-rest",
           "replay: continue until the droplet rests; otherwise the run ends as soon as it is proved that the "
           "droplet will come to rest")
+      .option("droplet",
+              "replay: path of a daughter, as in the table of droplets; the file's lengths and times are in "
+              "units of this\ndaughter; its diameter and birth are attributes of the file")
       .option("output", "HDF5 file to create")
       .option("lab",
               "file that describes the laboratory, see clogfit units; determines terminal-speed and "
@@ -86,8 +90,8 @@ std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const 
   return {name.string() + ".mp4", name.string() + ".gif"};
 }
 
-/// Refuses options that name the same file. The files are written one after the other, so two equal names
-/// would otherwise be noticed only after the run.
+/// Refuses options that name the same file. The files are written one after the other, so a user would notice
+/// two equal names only after the run.
 void refuse_same_files(const cli::CommandLine& line) {
   std::map<std::filesystem::path, std::string> options;
   for (const std::string option : {"output", "write-obstacles", "frames"})
@@ -129,7 +133,7 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
   return options;
 }
 
-/// Systems whose runs can be written to a file and filmed.
+/// Systems with runs that can be written to a file and filmed.
 const std::map<std::string, int (*)(cli::CommandLine&)>& followed_systems() {
   static const std::map<std::string, int (*)(cli::CommandLine&)> systems = {
       {"array", clogrun_array}, {"channel", clogrun_channel}, {"replay", clogrun_replay}};
@@ -158,7 +162,7 @@ int clogrun(int argc, char** argv) {
   if (!parse_options(line, argc, argv)) return console::exit_success;
   refuse_same_files(line);
   const std::string system = line.has("system") ? line.get("system") : "";
-  if (system != "replay") refuse_options(line, system, {"file", "task", "to-rest"});
+  if (system != "replay") refuse_options(line, system, {"file", "task", "to-rest", "droplet"});
   if (system == "channel") choose_layout(line, "channel");
   if (system == "sag") choose_layout(line, "wall");
   if (followed_systems().contains(system)) return run_system(line, system);

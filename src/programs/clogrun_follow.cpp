@@ -1,5 +1,9 @@
+#include <fmt/core.h>
+
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/cli/program.hpp"
@@ -9,33 +13,64 @@
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/world/lattice.hpp"
+#include "clog/results/repetition.hpp"
 #include "clog/results/stored_sweep.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "clogrun_commands.hpp"
 
 namespace clog::programs {
 namespace {
 
-/// Follows a run and writes its trajectory, after all errors of the user have been found.
-/// @param config  printed by --dry-run
-/// @param begin  called before the first step; not called if there is nothing to run
-int follow_run(const cli::CommandLine& line, const RunParameters& parameters, const std::string& config,
-               const std::function<void(const DropletRun&)>& begin) {
-  const std::string output = line.get("output");
-  const auto often = intervals(line, *parameters.time_step);
-  store::refuse_unwritable(output);
+void refuse_unwritable_files(const cli::CommandLine& line) {
+  store::refuse_unwritable(line.get("output"));
   if (line.has("write-obstacles")) store::refuse_unwritable(line.get("write-obstacles"));
+}
 
-  single_run::RecordedRun watched(DropletRun(parameters), often);
+/// Follows a run and writes its trajectory. All errors of the user have been found before.
+/// @param config  printed by --dry-run
+/// @param origin  of the trajectory
+/// @param begin  called before the first step; not called if there is nothing to run
+int follow_run(const cli::CommandLine& line, DropletRun run, const std::string& config,
+               store::Provenance origin, const std::function<void(const DropletRun&)>& begin) {
+  const RunParameters parameters = run.parameters();
+  single_run::RecordedRun watched(std::move(run), intervals(line, *parameters.time_step));
   const bool is_lattice = parameters.obstacles.layout == ObstacleLayout::lattice;
   const std::string lattice = is_lattice ? "# " + lattice_text(parameters.obstacles) + '\n' : "";
   if (line.has("dry-run")) return single_run::print_preview(config + lattice, watched.measure_cost());
   begin(watched.run());
   console::catch_stop_signals();
   watched.follow();
-  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), cli::origin(line)));
+  store::write_trajectory(line.get("output"),
+                          watched.trajectory(sweep::describe(parameters), std::move(origin)));
   return report(line, watched);
+}
+
+int follow_run(const cli::CommandLine& line, const RunParameters& parameters, const std::string& config,
+               const std::function<void(const DropletRun&)>& begin) {
+  refuse_unwritable_files(line);
+  return follow_run(line, DropletRun(parameters), config, cli::origin(line), begin);
+}
+
+/// Follows one daughter of the row's family from its birth, in its own units.
+int follow_droplet(const cli::CommandLine& line, const sweep::RunRow& row) {
+  refuse_options(line, "replay of a daughter", {"lab", "write-obstacles"});
+  const Member& member = results::member_of(row, line.get("droplet"));
+  refuse_unwritable_files(line);
+  std::optional<DropletRun> run = results::family_of(row).at_birth(member.path);
+  if (!run)
+    throw Error(fmt::format(
+        "cannot follow droplet {} of task {} (it {}); give another path", member.path, row.task,
+        member.status == MemberEnd::small ? "is smaller than smallest-daughter" : "failed where it began"));
+  store::Provenance origin = cli::origin(line);
+  origin.emplace_back("droplet", member.path);
+  for (const auto& [name, value] : {std::pair{"droplet_diameter", member.diameter},
+                                    {"birth_distance", member.birth.distance},
+                                    {"birth_lateral", member.birth.lateral},
+                                    {"birth_time", member.birth.time}})
+    origin.emplace_back(name, sweep::shortest(value));
+  return follow_run(line, std::move(*run), "", std::move(origin), [](const DropletRun&) {});
 }
 
 void write_obstacles(const cli::CommandLine& line, const DropletRun& run) {
@@ -93,6 +128,7 @@ int clogrun_replay(cli::CommandLine& line) {
   sweep::RunRow row = results::replayable_row(file, line.get("task"));
   results::use_instruction_set_of(row);
   if (line.has("to-rest")) row.parameters.clog_detection = ClogDetection::threshold;
+  if (line.has("droplet")) return follow_droplet(line, row);
   if (scene_of(row.parameters).finding != Finding::clogging_length)
     refuse_options(line, "replay of a channel or a wall", {"write-obstacles"});
   return follow_run(line, row.parameters, "", [&](const DropletRun& run) { write_obstacles(line, run); });

@@ -74,7 +74,7 @@ store::Provenance provenance(const cli::CommandLine& line,
   return all;
 }
 
-/// @throws Refusal, which it prints as JSON if this is the format
+/// @throws Refusal; if the format is JSON, also prints it as JSON
 sweep::Plan planned(const sweep::Settings& settings, results::PreviewFormat format) try {
   return sweep::Plan(settings);
 } catch (const Refusal& refusal) {
@@ -129,8 +129,8 @@ struct MasterState {
   }
 };
 
-/// Exit code that means: the sweep starts.
-constexpr int go_on = -1;
+/// Exit code of prepare() if the sweep starts.
+constexpr int sweep_starts = -1;
 
 int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,
                        char** argv) {
@@ -138,7 +138,7 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   cli::CommandLine line("clogsweep", clogsweep_usage, cli::CommandLine::SweepKeys::accepted);
   std::optional<MasterState> master;
   std::string task;  // the text of an assignment, see scheduler::Assignment::text()
-  int exit_code = go_on;
+  int exit_code = sweep_starts;
   if (ranks.rank() == 0) {
     exit_code = cli::run_program("clogsweep", [&] {
       if (!parse_sweep_options(line, argc, argv)) return console::exit_success;
@@ -149,10 +149,10 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
       task = assignment(line, master->settings(line)).text();
       return console::exit_success;
     });
-    if (master && exit_code == console::exit_success) exit_code = go_on;
+    if (master && exit_code == console::exit_success) exit_code = sweep_starts;
   }
   exit_code = ranks.broadcast(exit_code);
-  if (exit_code != go_on) return exit_code;
+  if (exit_code != sweep_starts) return exit_code;
   task = ranks.broadcast(task);
 
   const auto assigned = scheduler::Assignment::from(task);
@@ -166,7 +166,7 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   return console::exit_success;
 }
 
-/// The file that a sweep may resume, before its command line is checked; empty if none is given.
+/// The file that a sweep may resume. It is read before the command line is checked; empty if none is given.
 std::string named_output(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -182,7 +182,7 @@ std::string named_output(int argc, const char* const* argv) {
 int main(int argc, char** argv) {
   console::prepare_streams();
   if (const auto exit_code = cli::run_command("clogsweep", file_commands, argc, argv)) return *exit_code;
-  console::catch_stop_signals();  // a signal before the sweep stops it here
+  console::catch_stop_signals();  // a signal before the sweep stops the program here
   std::optional<scheduler::IsolatedJobs> isolated;
   const int exit_code = cli::run_program("clogsweep", [&] {
     require_memory("start MPI", memory_of_mpi);
@@ -198,7 +198,7 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "doctor") return clogsweep_doctor(ranks, argc, argv);
     return sweep_on_all_ranks(ranks, *isolated, argc, argv);
   } catch (const std::exception& error) {
-    // Once the sweep runs, ranks wait for each other, so an error of one must end all.
+    // Once the sweep runs, ranks wait for each other. So an error on one rank must end all ranks.
     console::say(fmt::format("clogsweep: rank {} on {}: {}", ranks.rank(),
                              scheduler::Communicator::host_name(), error.what()));
     const int code =

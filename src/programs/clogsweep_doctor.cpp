@@ -40,7 +40,7 @@ int print_findings(const std::vector<Finding>& findings) {
 }  // namespace
 
 int clogsweep_doctor(const scheduler::Communicator& ranks, int argc, const char* const* argv) {
-  // Rank 0 reads the command line; the others wait for its result.
+  // Rank 0 reads the command line; the other ranks wait for its result.
   cli::CommandLine line(doctor_name, doctor_usage);
   line.option("output", "file that the sweep will write", "sweep.h5");
   bool is_answered = false;

@@ -64,7 +64,7 @@ double precision(const cli::CommandLine& line) {
   try {
     number = sweep::to_number(text) / (is_percent ? 100 : 1);
   } catch (const Error&) {
-    // reported below, with the option's name
+    // the code below reports it with the option's name
   }
   if (number >= 0.001 && number < 1) return number;
   throw Error("invalid --until-precision=" + line.get("until-precision") +
@@ -103,7 +103,7 @@ void add_plan_options(cli::CommandLine& line) {
   }
 }
 
-/// Refuses a suffix of another format, because a table is an HDF5 file, whatever its name is.
+/// Refuses the suffix of another format, because the table is always an HDF5 file.
 void refuse_other_format(const cli::CommandLine& line) {
   if (!line.has("output")) return;
   const std::string name = line.get("output");
@@ -115,8 +115,8 @@ void refuse_other_format(const cli::CommandLine& line) {
                       name, name.substr(0, name.size() - std::string(ending).size())));
 }
 
-/// --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest unused seeds.
-/// So a killed sweep gets the same seeds again.
+/// Implements --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest
+/// unused seeds. So a killed sweep gets the same seeds again.
 void fill_seeds(cli::CommandLine& line) {
   if (!line.has("seeds-per-set")) return;
   for (const char* other : {"until-precision", "shard"})
@@ -154,9 +154,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       .flag("schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")
       .option("master-computes", "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no",
               "auto")
-      .option("max-hours",
-              "stop after this number of hours in the same way as after a signal; the same command resumes "
-              "the sweep")
+      .option("max-hours", "stop the sweep after this number of hours; the same command resumes it")
       .option("points",
               "CSV file with parameter sets in place of lists: the first line names keys, each further line "
               "has their values")
@@ -170,7 +168,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
               "`seeds`)")
       .option("seeds-per-set",
               "add seeds to every parameter set until it has this number, including seeds in the output file")
-      .option("attempts", "number of attempts for a run that fails", "2")
+      .option("attempts", "number of attempts for a run that crashes", "2")
       .option("report-seconds",
               "interval at which a running task reports its progress; a killed task loses at most this time",
               "10")

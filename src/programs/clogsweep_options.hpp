@@ -18,7 +18,7 @@ bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
 /// The options of the driver, checked except for the output's name.
 scheduler::DriverOptions driver_options(const cli::CommandLine& line);
 scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings);
-/// --format of --dry-run.
+/// The value of --format for --dry-run.
 results::PreviewFormat preview_format(const cli::CommandLine& line);
 std::int64_t attempts(const cli::CommandLine& line);
 /// The rule of --until-precision and --most-seeds; nullopt if the sweep does not grow.

@@ -75,7 +75,7 @@ int follow(const std::string& path) {
   }
 }
 
-/// The law that scaled a measured speed to the droplets, if one did.
+/// The law that scaled a measured speed to the droplets; empty if the speed was not scaled.
 std::string law_of_speed(const Status& status) {
   if (status.groups.empty()) return "";
   const RunParameters& run = status.groups.front().first_row.parameters;
@@ -110,7 +110,7 @@ int clogsweep_status(int argc, const char* const* argv) {
     throw Error("--follow and --watch exclude each other; give one");
   if (line.has("follow") && format != "json") throw Error("--follow prints lines of JSON; add --format json");
   if (line.has("follow")) return follow(path);
-  // Refuses other kinds of files in one line. A missing table is reported by the reader.
+  // Refuses other kinds of files with a message of one line. The reader reports a missing table.
   if (std::filesystem::exists(path)) store::Journal::is_open(store::journal_path(path));
   for (bool is_first = true;; is_first = false) {
     const Status status = results::status_of(

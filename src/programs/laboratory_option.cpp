@@ -37,15 +37,15 @@ void say_replaced(const cli::CommandLine& line) {
   console::say(fmt::format("clogfit: {} replaces the laboratory stored with the rows", line.get("lab")));
 }
 
-/// The smallest and the largest of these speeds, or the only one [mm/s].
+/// The smallest and the largest of these speeds [mm/s]; only one number if they are equal.
 std::string speeds_text(const std::vector<double>& speeds) {
   const auto [least, most] = std::ranges::minmax(speeds);
   const std::string first = fmt::format("{:.4g}", least), last = fmt::format("{:.4g}", most);
   return first == last ? first : first + " to " + last;
 }
 
-/// Says once if runs have another terminal speed than the laboratory's droplet: speeds and times in units of
-/// the laboratory are those of the runs.
+/// Prints one line if runs have another terminal speed than the laboratory's droplet. In this case, speeds
+/// and times in units of the laboratory are those of the runs.
 void say_other_speed(const std::vector<results::Group>& groups) {
   constexpr double rounding = 1e-3;
   std::vector<double> of_runs, of_droplets;
@@ -63,7 +63,7 @@ void say_other_speed(const std::vector<results::Group>& groups) {
                   speeds_text(of_runs), speeds_text(of_droplets)));
 }
 
-/// The line tension that a laboratory gives to its runs.
+/// The line tension that the runs of a laboratory have.
 double given_line_tension(const laboratory::Scales& scales) {
   const std::string text = laboratory::line_tension_text(scales);
   return text.empty() ? std::numeric_limits<double>::quiet_NaN() : sweep::to_number(text);
@@ -84,7 +84,7 @@ results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
 /// The droplets of a laboratory file, one or several.
 struct Droplets {
   std::vector<laboratory::Laboratory> all;
-  /// Whether there are several sizes, or circles drawn for another size.
+  /// Whether there are several sizes, or circles that were drawn for another size.
   bool have_several_sizes = false;
 
   void note_size(double diameter) {
@@ -98,7 +98,7 @@ std::vector<std::string> items_of(const std::string& list) {
   return {items.begin(), items.end()};
 }
 
-/// The names of these files, each followed by the droplet's diameter if its circles are to be scaled.
+/// The names of these files. A name is followed by the droplet's diameter if its circles are to be scaled.
 std::string scaled_circles(const std::string& list, const laboratory::Laboratory& lab,
                            const Droplets& droplets) {
   constexpr double milli = 1e-3;
@@ -115,7 +115,8 @@ bool is_plain_number(std::string_view text) {
   return text.find_first_not_of("0123456789.eE+-") == std::string::npos;
 }
 
-/// Whether the array's geometry depends on this key, and one of its values is a plain number other than 0.
+/// Whether the array's geometry depends on this key, and some value of the key is a plain number other than
+/// 0.
 bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, const std::string& text) {
   RunParameters run;
   run.obstacles.layout = layout;
@@ -130,9 +131,8 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
          });
 }
 
-/// An array whose lengths are given in millimetres is the same for all droplets. Numbers without a unit would
-/// be in droplet diameters, so that the array would grow with the droplets. The user must request this by
-/// writing sigma.
+/// An array with lengths in millimetres is the same for all droplets. Numbers without a unit would be in
+/// droplet diameters, so the array would grow with the droplets. If users want this, they must write sigma.
 /// @param texts  the texts that the user gave
 /// @throws Error
 void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory::Texts& texts) {

@@ -9,7 +9,7 @@
 
 namespace clog::programs {
 
-/// If --lab is given, sets the keys that its file determines, converts the keys that were given with units,
+/// If --lab is given, sets the keys that its file determines, converts the values that were given with units,
 /// and scales user-supplied circles to the droplet. @throws Error, also if the file has several droplets
 void use_laboratory(cli::CommandLine& line);
 

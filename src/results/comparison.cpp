@@ -64,7 +64,7 @@ std::set<Value> values_in(const std::vector<ParameterSet>& sets, const std::stri
   return values;
 }
 
-/// Columns that match the parameter sets of two sides: they vary within a side and have a value that occurs
+/// Columns that match the parameter sets of two sides: they vary within a side, and at least one value occurs
 /// on both sides.
 std::vector<std::string> common_columns(const Side& there, const Side& here,
                                         const std::vector<ParameterSet>& sets_there,
@@ -102,7 +102,7 @@ ByValues by_values(const std::vector<ParameterSet>& sets, const std::vector<std:
   return all;
 }
 
-/// Appends the sets of a side whose values in Comparisons::columns no set of the other side has.
+/// Appends the unmatched sets of a side: no set of the other side has their values in Comparisons::columns.
 void append_unmatched(Comparisons& comparisons, const Side& side, const Side& compared_with,
                       const ByValues& own, const ByValues& others) {
   std::vector<std::vector<Value>> unmatched;
@@ -151,7 +151,7 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
   return comparison;
 }
 
-/// What distinguishes the droplets of a cell: their diameter [mm] and their tilt [degrees].
+/// The numbers that distinguish the droplets of a cell: diameter [mm] and tilt [degrees].
 std::pair<double, double> droplet_of(const LaboratoryScale& scale) { return {scale.length, scale.tilt}; }
 
 /// Columns in which all compared sets differ, except automatic values.
@@ -287,7 +287,7 @@ bool follows_from_droplet(const sweep::Column& column, const std::vector<const s
 }
 
 void require_lengths(const Side& side) {
-  if (side.rows.empty()) throw Error(side.name + " has no runs yet; start its sweep, or resume it");
+  if (side.rows.empty()) throw Error("no runs yet in " + side.name + "; start or resume the sweep");
   if (!std::ranges::all_of(side.rows, has_clogging_length))
     throw Error("cannot compare " + side.name +
                 " (droplets in a channel or on a wall have no clogging length); clogsweep select takes the "

@@ -106,7 +106,7 @@ std::string note_of(const Comparison& one) {
   return text(one.flaws_here) + '/' + text(one.flaws_there);
 }
 
-/// All doubts, and the number of failed runs. A reference that is compared several times counts once.
+/// All doubts, and the number of failed runs. A reference that occurs in several comparisons counts once.
 Flaws all_flaws(const Comparisons& comparisons) {
   Flaws all;
   std::map<std::vector<Value>, int> failed;

@@ -37,7 +37,7 @@ class ResidualTime {
     slowing_ = fit::fit_clogging_length(logarithms, default_confidence);
   }
 
-  /// Mean remaining time of a run that max-time ends after `longest` at the latest.
+  /// Mean remaining time of a run that ends after `longest` at the latest, because of max-time.
   double seconds_left(const RunCost& run, double longest, Case which) const {
     const double most = longest - run.seconds;
     const bool may_never_end = !sets_with_ends_.contains(run.parameter_set);
@@ -57,16 +57,17 @@ class ResidualTime {
  private:
   std::set<std::int64_t> sets_with_ends_;
   fit::CloggingLength even_;     // fit to the times: every run is equally likely to end next
-  fit::CloggingLength slowing_;  // fit to their logarithms: a run that has lasted longer takes longer to end
+  fit::CloggingLength slowing_;  // fit to their logarithms: the remaining time grows with the time so far
 
-  /// Counts half an end more, so that the mean is finite even without any end.
+  /// Adds half an end to the number of ends, so that the mean is finite even without any end.
   static double mean(const fit::CloggingLength& fit) { return fit.total_distance / (fit.num_clogs + 0.5); }
 
-  /// Mean for exponential ends, P = exp(-t/mean).
+  /// Mean remaining time for exponential ends, P = exp(-t/mean).
   static double if_even(double mean, double most) {
     return std::isinf(mean) ? most : mean * -std::expm1(-most / mean);
   }
-  /// Mean for ends with the power law that mixes all exponentials equally, P = (t/seconds)^(-1/mean).
+  /// Mean remaining time for ends with the power law P = (t/seconds)^(-1/mean), which is an equal mixture of
+  /// all exponentials.
   static double if_slowing(double mean, double seconds, double longest) {
     const double power = 1 - 1 / mean;
     const double logarithm = std::log(longest / seconds);
@@ -167,14 +168,14 @@ class Shares {
   Expectation left() const {
     return {lowest_.seconds_left(), middle_.seconds_left(), highest_.seconds_left()};
   }
-  /// Estimate for runs that take `longest` if all of them last to max-time.
+  /// Estimate for runs that would take `longest` if all of them lasted to max-time.
   Expectation of(double longest, double relative_error) const {
     const double middle = longest * middle_.value();
     return {longest * lowest_.value(), middle, longest * highest_.value(),
             std::pow(middle * relative_error, 2)};
   }
   double error_of_all(std::int64_t population) const { return middle_.relative_error(population); }
-  /// The whole error comes from the runs outside the sample, because the cost of those inside is known.
+  /// The whole error comes from the runs outside the sample, because the cost of the runs inside is known.
   double error_of_others(std::int64_t number) const {
     const std::int64_t all = num_runs_ + number;
     return middle_.relative_error(all) * static_cast<double>(all) / static_cast<double>(number);

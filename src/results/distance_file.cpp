@@ -30,7 +30,7 @@ struct Head {
   int distance = -1, clogged = -1;
   double factor = 1;  ///< factor from the column's unit to the table's unit
   std::size_t num_columns = 0;
-  /// A column whose values separate groups.
+  /// A column with values that separate groups.
   struct Label {
     std::size_t column;
     std::optional<double> factor;  ///< from the unit of a laboratory's column to mm or degrees
@@ -54,7 +54,7 @@ void take_distance(Head& head, std::size_t column, const std::string& unit, Dist
   if (metres) head.factor = *metres / metres_per_mm;
 }
 
-/// @throws Error if the column says where each droplet was first seen
+/// @throws Error if the column gives the place where each droplet was first seen
 void refuse_entry(const std::string& cell, const std::string& name, const std::string& unit) {
   const bool is_length = unit == "sigma" || (!unit.empty() && console::metres_of(unit));
   static const std::set<std::string> places = {"start", "begin", "from", "entrance", "entered", "x0"};
@@ -67,7 +67,7 @@ void refuse_entry(const std::string& cell, const std::string& name, const std::s
         console::printable(cell)));
 }
 
-/// The name of a cell of the first line as a column of results.
+/// A cell of the first line, written like the name of a column of results.
 /// @param around_unit  what may begin the unit
 std::string result_name(const std::string& cell, const char* around_unit) {
   const std::string without_unit = console::trimmed(cell.substr(0, cell.find_first_of(around_unit)));
@@ -76,7 +76,7 @@ std::string result_name(const std::string& cell, const char* around_unit) {
   return name;
 }
 
-/// @throws Error if the column has the name of a result, which the printed table would contain twice
+/// @throws Error if the column has the name of a result. The printed table would contain this name twice.
 /// @param taken  names of results
 void refuse_result(const std::string& cell, const std::vector<std::string>& taken) {
   const std::string name = result_name(cell, "[(/");
@@ -89,7 +89,8 @@ void refuse_result(const std::string& cell, const std::vector<std::string>& take
     throw Error(fmt::format("column '{}' has the name of a result; rename it", console::printable(cell)));
 }
 
-/// @throws Error if the column would separate droplets by their outcomes, so that lengths mean nothing
+/// @throws Error if the column would separate droplets by their outcomes. The lengths would then have no
+/// meaning.
 void refuse_outcome(const std::string& cell) {
   const std::string name = result_name(cell, "[(");
   static const std::set<std::string> words = {"censored", "event", "outcome"};
@@ -102,8 +103,8 @@ void refuse_outcome(const std::string& cell) {
         console::printable(cell)));
 }
 
-/// The factor to the unit of a laboratory's column, mm or degrees; nullopt for any other column.
-/// @throws Error if the unit of a laboratory's column is not known
+/// For a column that belongs to the laboratory: the factor to its unit, mm or degrees. nullopt for any other
+/// column. @throws Error if the unit of the column is not known
 std::optional<double> laboratory_factor(const std::string& cell, const std::string& name,
                                         const std::string& unit) {
   if (name != "diameter" && name != "angle") return {};
@@ -120,7 +121,7 @@ std::optional<double> laboratory_factor(const std::string& cell, const std::stri
   return factor;
 }
 
-/// @throws Error if a comment states units, as in files of circles: the numbers of this table have others
+/// @throws Error if a comment gives units, as in files of circles, because this table has separate units
 void refuse_units(const std::string& comment) {
   const console::UnitsComment stated = console::units_in(comment);
   if (stated.unit || stated.droplet)
@@ -194,7 +195,7 @@ bool is_clogged(const std::string& cell) {
                   excerpt(cell)));
 }
 
-/// Numbers of a table whose cells may have decimal commas.
+/// Reads the numbers of a table that may have decimal commas.
 class Cells {
  public:
   double distance(const std::string& cell, char separator) {
@@ -238,7 +239,7 @@ class Cells {
   }
 };
 
-/// Says which columns make each droplet a group of its own, such as a column that numbers the droplets.
+/// Names columns that make each droplet a separate group, such as a column that numbers the droplets.
 void hint_at_lone_droplets(const DistanceTable& table) {
   constexpr std::size_t fewest_groups = 3;
   if (table.groups.size() < fewest_groups) return;
@@ -262,9 +263,9 @@ bool is_quantity(const std::string& label) {
                              [&](const sweep::Key& key) { return label_key(key.name) == label_key(label); });
 }
 
-/// Names columns each of whose values has only clogged, or only moving droplets. If half of the droplets or
-/// more have a value of their own, the column may number the droplets, and is not named. Nor are quantities
-/// that were set before the run.
+/// Names columns in which every value has only clogged, or only moving droplets. A column that may number the
+/// droplets is not named: at least half of them have a unique value there. Quantities that were set before
+/// the run are not named, either.
 void hint_at_outcomes(const DistanceTable& table) {
   for (std::size_t i = 0; i < table.labels.size(); ++i) {
     if (is_quantity(table.labels[i])) continue;

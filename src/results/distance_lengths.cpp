@@ -41,14 +41,15 @@ std::vector<Lengths> lengths_of(const DistanceTable& table, double confidence) {
   return all;
 }
 
-/// A unit of lengths: the suffix of names, and the factors from the table's unit for each group; NaN where
-/// the droplet's diameter is unknown.
+/// A unit of lengths: the suffix of names, and for each group the factor from the table's unit. The factor is
+/// NaN if the droplet's diameter is unknown.
 struct Unit {
   const char *suffix, *text;
   std::vector<double> factors;
 };
 
-/// The table's own unit comes first. The other one needs a diameter in some group.
+/// The units of the results. The table's own unit comes first. The other unit requires a known diameter in
+/// some group.
 std::vector<Unit> units_of(const DistanceTable& table, std::optional<double> sigma_mm) {
   const bool is_in_mm = table.unit == "mm";
   const std::vector<double> ones(table.groups.size(), 1);
@@ -155,7 +156,7 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
     num_runs += one.clogging.num_runs;
     num_clogs += one.clogging.num_clogs;
   }
-  // If a table marks censored droplets instead of clogged ones, these numbers show it.
+  // If a table marks censored droplets instead of clogged ones, the number of clogs shows this.
   return text_table(rows_of(table, lengths, sigma_mm, confidence)) + legend_of(doubts) +
          fmt::format(
              "\nread: of {}, {} clogged (clogged = 1) and {} still moved where last seen (clogged = 0)\n",

@@ -29,7 +29,7 @@ std::optional<double> number_in(const Value& value) {
   return number ? std::optional(*number) : std::nullopt;
 }
 
-/// Whether two labels are the same. A person may have rounded a number to three digits.
+/// Whether two labels are the same. A user may have rounded a number to three digits.
 bool are_alike(const Value& one, const Value& other) {
   constexpr double rounding = 0.005;
   const std::optional<double> number = number_in(one), number_there = number_in(other);
@@ -213,7 +213,7 @@ Comparisons compare_distances(const std::vector<DistanceTable>& tables, double c
   const std::optional<double> given_sigma = sigma_mm;
   const bool are_units_equal =
       std::ranges::all_of(tables, [&](const DistanceTable& table) { return table.unit == there.unit; });
-  // Distances in droplet diameters do not say which of several droplets of a sweep is meant.
+  // Distances in droplet diameters are ambiguous if a sweep has several droplets.
   const auto knows_diameters = [&](const DistanceTable& table) {
     return (sigma_mm || table.is_measured) &&
            std::ranges::all_of(table.groups, [&](const DistanceGroup& group) {

@@ -15,13 +15,13 @@
 namespace clog::results {
 namespace {
 
-/// Whether so many clogs may be artefacts of the mesh that the length may be wrong.
+/// Whether clogs that may be artefacts of the mesh are so many that the length may be wrong.
 bool hangs_on_mesh(const Group& group) {
   constexpr double tolerated = 0.1;  // tolerated fraction of the clogs
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
 }
 
-/// Whether a finer mesh may let so many of the clogged droplets go that the length may be wrong.
+/// Whether the length may be wrong because a finer mesh may let many of the clogged droplets go.
 bool is_near_friction_limit(const Group& group) {
   constexpr double tolerated = 0.15;  // tolerated fraction of the clogs
   return group.num_near_friction_limit > tolerated * group.clogging.num_clogs;
@@ -35,7 +35,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
   // If all droplets passed the exit, more seeds would only raise the lower bound.
   const bool lacks_clogs =
       clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
-  // Counting failures as clogs is the worst that they can hide.
+  // The worst case is that every failure hides a clog.
   const int num_failures = group.num_failed_counted + group.num_failed_somewhere;
   const bool do_failures_matter =
       num_failures > 0 &&

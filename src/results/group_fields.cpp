@@ -21,7 +21,7 @@ bool has_role(const sweep::Column& column, ParameterRole role) {
   return column.parameter && column.parameter->role == role;
 }
 
-/// Appends the number of runs that each cause ended, and the lengths; all are unset if the causes are
+/// Appends the number of runs that each cause ended, and the lengths. All of them are unset if the causes are
 /// unknown.
 void append_causes(const Group& group, std::vector<Field>& fields) {
   const bool are_known = !group.causes.empty();

@@ -59,6 +59,33 @@ Json field_units(const std::vector<Group>& groups) {
   return all;
 }
 
+Json diameters_json(const Diameters& all) {
+  return {{"number", all.number},
+          {"area", all.area},
+          {"mean_diameter", json_of(Value(all.mean))},
+          {"numbers", all.numbers},
+          {"areas", all.areas}};
+}
+
+/// Numbers and areas per ancestor.
+Json families_json(const Families& families) {
+  Json lines = Json::array();
+  for (const FamilyLine& line : families.lines)
+    lines.push_back({{"distance", line.distance},
+                     {"passed", diameters_json(line.passed)},
+                     {"clogged", line.clogged},
+                     {"small", line.small},
+                     {"not_known", line.not_known},
+                     {"passing", line.passing},
+                     {"passing_lower", json_of(Value(line.interval.lower))},
+                     {"passing_upper", json_of(Value(line.interval.upper))}});
+  return {{"ancestors", families.num_ancestors},
+          {"daughters", families.num_daughters},
+          {"diameter_class", diameter_class},
+          {"clogged", diameters_json(families.clogged)},
+          {"lines", lines}};
+}
+
 /// All of a group's fields, with its curves.
 Json group_json(const Group& group, bool with_laboratory) {
   Json entry = json_of(all_fields(group, with_laboratory));
@@ -79,6 +106,7 @@ Json group_json(const Group& group, bool with_laboratory) {
     for (const fit::IncidenceStep& step : cause.incidence)
       entry["incidence"][cause.text->count].push_back(step_json(step, "ends", step.num_ends));
   if (is_device(group.first_row.parameters)) entry["passages"] = passages_json(group.passages);
+  if (group.families.num_ancestors > 0) entry["families"] = families_json(group.families);
   entry["censored_distances"] = group.censored_distances;
   return entry;
 }
@@ -142,7 +170,8 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
                    {"lists", listed_columns(provenance)},
                    {"sweep", origin},
                    {"groups", groups_json(groups)}};
-  // If all groups have the same scale, the document has it once, otherwise each group has its own.
+  // If all groups have the same scale, the document contains it once. Otherwise each group has a separate
+  // scale.
   for (const Group& group : groups)
     if (const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory)
       document["laboratories"][own->check_sum()] = console::printable(own->text());

@@ -32,7 +32,7 @@ std::string note_of_automatic(const std::vector<Group>& groups, const std::vecto
   return "";
 }
 
-/// Explains columns whose heads are not enough.
+/// Explains the columns that need more than a head.
 std::string column_notes(const std::vector<Group>& groups) {
   if (!has_clogging_length(groups.front().first_row)) return "";
   std::string text;
@@ -46,7 +46,7 @@ std::string column_notes(const std::vector<Group>& groups) {
         "lambda_b\n";
   if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
-        "passed: droplets that reached the exit. They count as not clogged on their way, so lambda may "
+        "passed: droplets that reached the exit. They count as not clogged up to there, so lambda may "
         "exceed the device's length\n";
   if (std::ranges::all_of(groups, [](const Group& group) { return is_device(group.first_row.parameters); }))
     text +=
@@ -55,7 +55,7 @@ std::string column_notes(const std::vector<Group>& groups) {
   return text;
 }
 
-/// The longest time that is shorter than the given time and has one significant digit.
+/// The largest time below the given time that has one significant digit.
 double shorter_dwell(double rest) {
   const double unit = std::pow(10, std::floor(std::log10(rest)));
   const double digit = std::ceil(rest / unit) - 1;

@@ -62,10 +62,10 @@ Value without_round_off(const Value& value) {
 std::string rounded_text(const Group& group, const std::vector<Group>& groups, const sweep::Column& column,
                          int digits = few_digits) {
   const sweep::RunRow& row = group.first_row;
-  if (column.name == "laboratory")
+  if (column.holds_text())
     if (std::string label = laboratory_label(group, groups); !label.empty()) return label;
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
-  if (column.name == "obstacles" && own && !own->source().empty())
+  if (column.holds_file() && own && !own->source().empty())
     return console::printable(std::filesystem::path(own->source()).filename().string());
   return short_text(without_round_off(column.get(row)), digits);
 }
@@ -105,11 +105,11 @@ bool follows_from_shown(std::size_t place, const std::vector<bool>& shown, const
       groups, [&](const Group& group) { return group_columns()[place]->get(group.first_row); }, shown_values);
 }
 
-/// Whether the row lacks a value because the other model alone has this parameter.
+/// Whether the row lacks a value because only the other model has this parameter.
 bool lacks_as_model(const sweep::Column& column, const sweep::RunRow& row) {
   RunParameters of_other_model = row.parameters;
   of_other_model.model = row.parameters.model == Model::dp ? Model::sp : Model::dp;
-  return !has_parameter(column, row.parameters) && has_parameter(column, of_other_model);
+  return !column.applies_to(row.parameters) && column.applies_to(of_other_model);
 }
 
 /// A group with the column's value if one model alone has this parameter, with the same value in all of its
@@ -127,8 +127,8 @@ const Group* group_of_only_model(const sweep::Column& column, const std::vector<
   return do_some_lack ? with_value : nullptr;
 }
 
-/// Columns that vary, except those whose automatic values follow from the others, and those that vary only
-/// because one of the models lacks them.
+/// Columns that vary. Two kinds are left out: automatic values that follow from the other columns, and
+/// columns that vary only because one of the models lacks them.
 std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vector<bool>& varies) {
   const sweep::RunRow& first = groups.front().first_row;
   const RunParameters& run = first.parameters;
@@ -158,8 +158,8 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
   return shown;
 }
 
-/// The parameters that need a mention and that all groups share, or all groups of the one model that has
-/// them, by the name of this model. Automatic values have a star.
+/// Parameters that need a mention because they have one value for all groups, or for all groups of the only
+/// model that has them; by the name of this model. Automatic values have a star.
 /// @param named  parameters that are named above or in the table; the function adds its own
 std::map<std::string, std::vector<std::string>> shared_words(const std::vector<Group>& groups,
                                                              const std::vector<bool>& varies,
@@ -177,9 +177,7 @@ std::map<std::string, std::vector<std::string>> shared_words(const std::vector<G
     if (usual.empty() && shared == SharedParameters::unusual) usual = usual_parameters(row);
     const Value value = column.get(row);
     const std::string text = sweep::text_of(value);
-    const bool tells_all =
-        column.name == "model" || (column.name == "preset" && text != sweep::find_key("preset").default_text);
-    if (text.empty() || text == "none" || !(tells_all || usual.empty() || value != usual[i])) continue;
+    if (text.empty() || text == "none" || !(usual.empty() || value != usual[i])) continue;
     words[varies[i] ? name(row.parameters.model) : ""].push_back(
         fmt::format("{}={}{}", column.name, rounded_text(*group, groups, column), star_of(column, row)));
     named[i] = true;
@@ -225,7 +223,7 @@ ParameterColumns parameter_columns(const std::vector<Group>& groups, const std::
     };
     if (columns.droplets.empty() || !is_determined_by(groups, cell, droplet_of))
       columns.others.push_back({column.name, cell});
-    else if (column.name != "laboratory")
+    else if (!column.holds_text())
       columns.following.push_back({column.name, cell});
   }
   return columns;
@@ -320,6 +318,33 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
                      console::aligned(lines));
 }
 
+/// What became of the ancestors' area at some lines, with break-up=daughters.
+std::string table_of_families(const std::vector<Group>& groups, const std::vector<ResultColumn>& parameters,
+                              double confidence) {
+  std::vector<std::vector<std::string>> lines = {heads(parameters)};
+  for (const char* name :
+       {"x/sigma", "droplets", "mean d", "passed", "clogged", "small", "not known", "passing"})
+    lines[0].emplace_back(name);
+  lines[0].push_back(fmt::format("{:g} %", 100 * confidence));
+  for (const Group& group : groups)
+    for (const FamilyLine& line : group.families.lines) {
+      std::vector<std::string>& words = lines.emplace_back(cells(group, parameters));
+      words.push_back(fmt::format("{:g}", line.distance));
+      words.push_back(fmt::format("{:.2f}", line.passed.number));
+      words.push_back(std::isnan(line.passed.mean) ? "-" : fmt::format("{:.2f}", line.passed.mean));
+      for (const double area : {line.passed.area, line.clogged, line.small, line.not_known, line.passing})
+        words.push_back(fmt::format("{:.2f}", area));
+      words.push_back(std::isnan(line.interval.lower)
+                          ? "-"
+                          : fmt::format("{:.2f} .. {:.2f}", line.interval.lower, line.interval.upper));
+    }
+  if (lines.size() == 1) return "";
+  return fmt::format(
+      "\ndroplets per ancestor that passed x, their mean diameter, and shares of the ancestors' "
+      "area\n{}",
+      console::aligned(lines));
+}
+
 /// Defines a clog, if resting droplets count as clogged, too; otherwise returns an empty text.
 std::string definition_of_clogs(const std::vector<Group>& groups) {
   const double dwell = groups.front().dwell;
@@ -357,7 +382,7 @@ std::string text_of_kind(const std::vector<Group>& groups, double confidence, Sh
   std::vector<std::vector<std::string>> lines = {heads(columns)};
   for (const Group& group : groups) lines.push_back(cells(group, columns));
   return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, parameters.first(), confidence) +
-         notes_below(groups, named);
+         table_of_families(groups, parameters.first(), confidence) + notes_below(groups, named);
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ std::optional<Cause> cause_of(const sweep::RunRow& run) {
   throw std::logic_error("a mechanism that is no cause");
 }
 
-/// Whether the run may have dwells of this length. A run that has not begun has no dwells.
-bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
+/// Whether the run may have recorded dwells of this length. A run that has not begun has no dwells.
+bool may_have_dwells(const sweep::RunRow& run, double dwell) {
   return dwell < run.parameters.max_time && run.steps > 0;
 }
 
@@ -67,8 +67,8 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const double observed = sweep::observed_distance(run).value();
   const Ending last = {observed, is_clogged, cause_of(run)};
-  if (!has_dwells_to_tell(run, dwell)) return last;
-  // The mechanism of a droplet that moved on is unknown, so its clog counts as `other`.
+  if (!may_have_dwells(run, dwell)) return last;
+  // The mechanism of a droplet that moved on is unknown, so its long rest counts as a clog by `other`.
   const bool has_failed = run.status == RunStatus::failed;
   const Dwell* first = run.dwells.first_longer(dwell);
   if (first && (!has_failed || first->distance <= observed)) return {first->distance, true, Cause::other};
@@ -87,7 +87,7 @@ std::optional<Ending> ending_if_counted(const sweep::RunRow& run, Ending ending)
 /// The later of two times; NaN if one of them is NaN.
 double later(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
-/// Rounds up to three figures, which people can type.
+/// Rounds up to three figures, so that users can type the number.
 std::string rounded_up(double number) {
   const double unit = std::pow(10, std::floor(std::log10(number)) - 2);
   return fmt::format("{:.3g}", std::ceil(number / unit) * unit);
@@ -98,8 +98,8 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
   int num_unknown = 0;
   double known_from = 0;
   for (const sweep::RunRow& row : rows) {
-    if (!has_dwells_to_tell(row, dwell) || dwell >= row.dwells.known_from) continue;
-    if (!is_observed(row)) continue;  // left out
+    if (!may_have_dwells(row, dwell) || dwell >= row.dwells.known_from) continue;
+    if (!is_observed(row)) continue;  // the row is excluded
     num_unknown += !sweep::is_known(row.dwells.known_from);
     if (row.dwells.known_from > known_from) known_from = row.dwells.known_from;
   }
@@ -118,7 +118,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
 /// Fits clogging lengths to those intact runs that reached `from_distance`.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
   if (!has_clogging_length(group.first_row)) return;
-  // Some of the ends count as events; all other runs are censored.
+  // The ends that `is_end` selects count as events; all other runs are censored.
   const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
     observations.reserve(runs.size());
@@ -146,7 +146,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   }
 }
 
-/// The runs that met an obstacle, each counted from its first obstacle on.
+/// The runs that met an obstacle. The distance of each run counts from its first obstacle.
 struct Meetings {
   std::vector<fit::Observation> from_first;  ///< outcomes of the runs that met an obstacle
   std::int64_t num_contacts = 0;
@@ -170,8 +170,8 @@ void fit_meetings(Group& group, const Meetings& meetings, double confidence) {
   if (meetings.way > 0) group.contacts_per_length = static_cast<double>(meetings.num_contacts) / meetings.way;
 }
 
-/// If only one or two runs travelled far enough to have a speed, they do not represent all runs, so their
-/// mean is not printed.
+/// If only one or two runs travelled far enough to have a speed, they do not represent all runs. Their mean
+/// is then not printed.
 fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   constexpr int fewest_runs = 3;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -179,7 +179,7 @@ fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   return speed;
 }
 
-/// Counts a run that ended by max-time although its droplet had rested for long.
+/// Counts a run that max-time ended after its droplet had rested for long.
 void add_rest(const sweep::RunRow& run, Group& group) {
   constexpr double diameters = 10;
   const double rest = run.time - run.dwells.last_begin;
@@ -188,7 +188,7 @@ void add_rest(const sweep::RunRow& run, Group& group) {
   group.shortest_rest = std::min(group.shortest_rest, rest);
 }
 
-/// Distance and time until the end, or until the last dwell of a clogged run began; unknown in files without
+/// Distance and time until the end; for a clogged run, until its last dwell began. Unknown in files without
 /// dwells.
 fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   const bool is_clogged = run.status == RunStatus::clogged;
@@ -196,8 +196,8 @@ fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   return {way / run.parameters.drag.terminal_speed, is_clogged ? run.dwells.last_begin : run.time};
 }
 
-/// A group whose droplets sank by less than half a diameter on average has no speed. A single droplet that
-/// sank by less than half a diameter has none either.
+/// A group has no speed if its droplets sank by less than half a diameter on average. Nor has a single
+/// droplet that sank by less than this.
 fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
   constexpr double shortest_way = 0.5;  // [sigma]
   double way = 0;
@@ -206,8 +206,8 @@ fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double te
   return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
 }
 
-/// Keeps one run of each droplet (one seed in one array), the run with the largest max-time. A crash tells
-/// less about a droplet than any other run.
+/// Keeps one run of each droplet (one seed in one array): the run with the largest max-time. A crash is kept
+/// only if there is no other run, because it says less about the droplet.
 void keep_longest(std::vector<const sweep::RunRow*>& runs) {
   std::ranges::stable_sort(runs, std::ranges::greater(), [](const sweep::RunRow* run) {
     return std::pair(!sweep::may_succeed_later(*run), run->parameters.max_time);
@@ -223,7 +223,8 @@ void keep_longest(std::vector<const sweep::RunRow*>& runs) {
 struct Tally {
   std::vector<Ending> endings;  ///< runs that count for the clogging length
   std::vector<double> clogs;    ///< distances of the clogs [sigma]
-  /// Distances of runs that did not clog, but met an obstacle: those that sank freely go equally far [sigma].
+  /// Distances of runs that met an obstacle but did not clog [sigma]. Droplets that sank freely are excluded,
+  /// because all of them go equally far.
   std::vector<double> others;
   std::vector<Arrival> arrivals;
   Meetings meetings;
@@ -239,7 +240,7 @@ void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Ta
   const std::optional<Ending> ending = ending_if_counted(run, from_release);
   group.num_interrupted += sweep::is_unfinished(run.status) && !from_release.is_clog;
   if (is_device(run.parameters)) {
-    const double begin = beginning_of_way(run.parameters.obstacles, run.release[0]);
+    const double begin = start_of_path(run.parameters.obstacles, run.release[0]);
     tally.arrivals.push_back(
         {begin, begin + from_release.distance, from_release.is_clog || from_release.cause.has_value()});
     if (is_displaced(run.parameters, run.release[0], run.release[1])) group.displaced.push_back(begin);
@@ -272,8 +273,8 @@ void add_motion(const sweep::RunRow& run, Group& group, Tally& tally) {
   if (run.steps > 0) tally.travels_until_arrest.push_back(travel_until_arrest(run));
 }
 
-/// Counts failed and damaged runs, and includes all runs that are observed. Failed runs are left out of
-/// speeds and lateral displacements, which they may have changed before they were found.
+/// Counts failed and damaged runs, and includes all runs that are observed. Failed runs are excluded from
+/// speeds and lateral displacements, because the failure may have changed these before it was detected.
 Tally tally_of(std::span<const sweep::RunRow* const> runs, double from_distance, Group& group) {
   Tally tally;
   for (const sweep::RunRow* run : runs) {
@@ -345,6 +346,14 @@ std::vector<const sweep::Column*> pooled_columns(const std::string& keys) {
   return columns;
 }
 
+/// The families of the runs that are over and intact.
+static Families families_of(const std::vector<const sweep::RunRow*>& runs, double confidence) {
+  std::vector<std::vector<Member>> families;
+  for (const sweep::RunRow* run : runs)
+    if (!run->family.empty() && sweep::fault_of(*run).empty()) families.push_back(run->family);
+  return families_of(families, confidence);
+}
+
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance,
                               double dwell, std::span<const sweep::Column* const> pooled,
                               std::span<const double> lines) {
@@ -363,6 +372,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.are_runs_equal = fit::are_mostly_equal(tally.clogs.empty() ? tally.others : tally.clogs);
     fit_meetings(group, tally.meetings, confidence);
     if (is_device(run)) group.passages = passages_of(run, tally.arrivals, lines, confidence);
+    group.families = families_of(runs, confidence);
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(tally.speeds));
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(tally.travels));
     group.relative_speed_all = mean_speed_of_all(tally.travels_until_arrest, run.drag.terminal_speed);

@@ -49,7 +49,7 @@ std::string differing_keys(const sweep::Settings& there, const sweep::Settings& 
   const auto values_there = there.all_values();
   const auto values_here = here.all_values();
   for (const sweep::Key& key : sweep::keys())
-    if (!may_grow_along(key) && key.name != "preset" &&
+    if (!may_grow_along(key) && key.parameter &&
         !have_common_value(values_there.at(key.name), values_here.at(key.name)))
       append(all, key.name, shown(here, key, values_here), shown(there, key, values_there));
   return all;

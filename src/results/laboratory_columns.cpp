@@ -24,14 +24,15 @@ fit::MeanSpeed speed_in_mm_per_s(const Group& group) {
   return speed;
 }
 
-/// Mean time until a clog [s]: lambda divided by the speed of all runs, both in units of the laboratory.
+/// Mean time until a clog [s]: lambda in mm divided by the speed of all runs in mm/s.
 double time_to_clog(const Group& group) {
   if (group.clogging.num_clogs == 0) return std::numeric_limits<double>::quiet_NaN();
   return group.clogging.length * scale_of(group).length / speed_in_mm_per_s(group).mean;
 }
 
 /// The interfacial tension of a polygon [mN/m]; NaN for the soft disk. Runs of the laboratory's droplet have
-/// its tension, not that of their rounded Gamma.
+/// the tension of this droplet. It differs a little from the tension that follows from their Gamma, which is
+/// rounded.
 double tension_of(const Group& group) {
   const RunParameters& run = group.first_row.parameters;
   const LaboratoryScale scale = scale_of(group);

@@ -11,7 +11,7 @@
 
 namespace clog::results {
 
-/// A run of a sweep in its table and its journal: points to the row and the record that latest_rows() found.
+/// A run in the table and the journal of a sweep: its row and its record, as found by latest_rows().
 struct LatestRow {
   sweep::RunRow* in_table = nullptr;        ///< nullptr: only the journal has the run
   store::Journal::Entry* record = nullptr;  ///< the record that replaces the table's row; nullptr: none
@@ -20,11 +20,11 @@ struct LatestRow {
   bool was_final() const { return in_table && sweep::is_final(*in_table); }
 };
 
-/// Joins the rows of a table with the records of its journal, oldest first. A record replaces the known row
-/// of its run, unless that row is final and the record is not: then the journal has lost the run's last
-/// record. The result has the rows in their order, followed by the runs that only the journal has. If the
-/// table repeats a run, records replace its first row.
-/// @param key  of a row, by which runs are recognised
+/// Joins the rows of a table with the records of its journal, oldest first. A record replaces the earlier row
+/// of its run, except if that row is final and the record is not: in that case, the journal has lost the
+/// run's last record. The result has the rows in their order, followed by the runs that only the journal has.
+/// If the table repeats a run, records replace the first of its rows.
+/// @param key  function of a row that identifies the run
 template <class Key = std::string (*)(const sweep::RunRow&)>
 std::vector<LatestRow> latest_rows(std::span<sweep::RunRow> rows, std::span<store::Journal::Entry> records,
                                    Key key = sweep::identity) {
@@ -45,7 +45,7 @@ std::vector<LatestRow> latest_rows(std::span<sweep::RunRow> rows, std::span<stor
   return runs;
 }
 
-/// No run is running in a file to which no sweep writes.
+/// If no sweep writes to a file, its runs are not running.
 inline void interrupt_if_running(sweep::RunRow& row) {
   if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
 }

@@ -36,7 +36,7 @@ struct Part {
 Part whole_part(const std::string& path) {
   if (store::Journal::is_open(store::journal_path(path)))
     throw Error("cannot merge " + path + " (a sweep is writing to it); wait for it to end, or stop it");
-  store::read_sweep(path);  // refuses a damaged one
+  store::read_sweep(path);  // this refuses a damaged file
   Salvage found = salvage(path);
   if (!found.damage.empty())
     throw Error(fmt::format("cannot merge {} (damaged: {}); `clogsweep salvage` keeps what is whole", path,
@@ -116,14 +116,15 @@ class Rows {
   }
 };
 
-/// Numerical keys, such as vertices, in which parameter sets of two files differ that are otherwise the same;
-/// empty if two files have a parameter set in common.
+/// Numerical keys, such as vertices, that are the only difference between parameter sets of two files. Empty
+/// if two files have a parameter set in common.
 std::set<std::string> differing_numerics(const std::vector<Part>& parts) {
   const auto is_numerical = [](const sweep::Column& column) {
     return column.parameter && column.parameter->role == ParameterRole::numerics;
   };
   std::map<std::vector<Value>, const Part*> sets;
-  std::map<std::vector<Value>, std::pair<const Part*, const RunRow*>> alike;  // same but for numerical keys
+  std::map<std::vector<Value>, std::pair<const Part*, const RunRow*>>
+      alike;  // equal sets apart from numerical keys
   std::set<std::string> names;
   for (const Part& part : parts)
     for (const RunRow& row : part.table.rows) {
@@ -154,7 +155,8 @@ void add_circles(const store::SweepFile& file, std::vector<store::CircleFile>& a
   }
 }
 
-/// Adds all runs of the plan (with --until-precision only those that have begun), and those outside it.
+/// Adds all runs of the plan (with --until-precision only those that have begun), and the runs outside the
+/// plan.
 void add_runs(const Part& part, RunList& runs) {
   const sweep::Plan plan = stored_plan(part.path, part.table);
   if (attribute(part.table.provenance, "stopping_rule").empty()) runs.add(plan);
@@ -218,7 +220,7 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   return console::json_text(part, -1) + attribute(file.provenance, "parts");
 }
 
-/// Attributes that a new file does not take from `maker`: it has its own, which summarise the attributes of
+/// Attributes that a new file does not take from `maker`. In the new file they summarise the attributes of
 /// its parts.
 static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
                                                            "num_wanted"};
@@ -282,7 +284,7 @@ store::SweepFile read_together(const std::vector<std::string>& paths) {
     RunList runs;
     for (const Part& part : parts) add_runs(part, runs);
     if (!runs.empty()) config = number_tasks(runs, merged.table);
-  } catch (const Error& error) {  // a config is from a version with other keys, or two contradict each other
+  } catch (const Error& error) {  // another version wrote the config, or two configs contradict each other
     say_unread(joined(paths), "read together without their settings", error);
   }
   merged.table.provenance =

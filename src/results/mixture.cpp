@@ -107,7 +107,7 @@ std::string differences(const std::vector<const Group*>& groups) {
   for (const sweep::Column* column : group_columns()) {
     std::set<Value> values;
     for (const Group* group : groups)
-      if (has_parameter(*column, group->first_row.parameters))
+      if (column->applies_to(group->first_row.parameters))
         values.insert(separating_value(*column, group->first_row));
     if (values.size() > 1) names.push_back(column->name);
   }

@@ -45,7 +45,7 @@ std::vector<Passage> passages_of(const RunParameters& device, std::span<const Ar
   std::vector<double> places(lines.begin(), lines.end());
   if (places.empty()) places = rows_of_posts(device.obstacles);
   if (const double exit = device.obstacles.exit; exit > 0) {
-    std::erase_if(places, [=](double x) { return std::abs(x - exit) < round_off; });  // it is the last line
+    std::erase_if(places, [=](double x) { return std::abs(x - exit) < round_off; });  // the last line
     places.push_back(exit);
   }
   std::vector<Passage> passages;

@@ -48,7 +48,7 @@ void print(Preview& preview, PreviewFormat format) {
   std::cout << (format == PreviewFormat::json ? console::json_text(preview.json, -1) : preview.text);
 }
 
-/// Prints the text of a preview that a signal or a failure ended early.
+/// Prints the text of a preview that a signal or a failure has ended early.
 void print_incomplete(const Preview& preview, PreviewFormat format) {
   if (format == PreviewFormat::text) std::cout << preview.text;
 }
@@ -95,7 +95,7 @@ SweepCost plus(SweepCost cost, double seconds) {
   return cost;
 }
 
-/// Replaces the estimate and its limit; the interval keeps its relative width.
+/// Replaces the estimate and its limits; the interval keeps its relative width.
 SweepCost with_expected(SweepCost trials, const SweepCost& stored) {
   trials.bound = stored.bound;
   trials.lower *= stored.expected / trials.expected;
@@ -135,7 +135,8 @@ void add_left(Preview& preview, const sweep::Plan& plan, const std::string& outp
   preview.json["left"] = hours_json(left);
 }
 
-/// Warns before the runs about clogging lengths below an obstacle spacing, which clogfit would doubt (`v`).
+/// Prints a warning, before the runs, if clogging lengths may be below an obstacle spacing. clogfit would
+/// mark such lengths with the doubt `v`.
 void add_short_lengths(Preview& preview, const Sample& sample) {
   constexpr std::int64_t fewest = 3;
   constexpr std::int64_t one_in =

@@ -68,11 +68,11 @@ void Progress::not_ended(const sweep::RunRow& failed) {
 }
 
 void Progress::tick() {
-  if (status_.is_due()) status_.renew(line());
+  if (status_.is_due()) status_.redraw(line());
 }
 
 void Progress::finish() {
-  status_.renew(line());
+  status_.redraw(line());
   status_.keep();
 }
 

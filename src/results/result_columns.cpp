@@ -15,8 +15,8 @@
 namespace clog::results {
 namespace {
 
-/// The group's break-ups; nullptr if its mechanisms are unknown, because files with break-ups have
-/// mechanisms, too.
+/// The group's break-ups; nullptr if its mechanisms are unknown. (All files with break-ups also have
+/// mechanisms.)
 const fit::CloggingLength* break_ups(const Group& group) {
   for (const Group::EndsBy& cause : group.causes)
     if (cause.text->cause == Cause::broken) return &cause.ends;
@@ -61,7 +61,7 @@ bool have_some_broken(const std::vector<Group>& groups) {
 
 namespace {
 
-/// Numbers of clogs by mechanism, as 3/5/2/0.
+/// Numbers of clogs by mechanism, such as 3/5/2/0.
 std::string mechanism_counts(const Group& group) {
   std::vector<std::string> counts;
   for (const Group::EndsBy& cause : group.causes)
@@ -151,7 +151,8 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
         {"of", [](const Group& group) { return std::to_string(group.relative_speed_steady.num_runs); }});
   // Speeds in laboratory units are those of all runs.
   if (has_laboratory || have_few_speeds) append("all runs", speed_of_all, columns);
-  // Only groups with rows of posts have these columns: in a random array, droplets go straight on average.
+  // Only groups with rows of posts have these columns, because in a random array droplets move straight on
+  // average.
   if (std::ranges::any_of(groups, has_rows)) {
     append("lateral/r", slope_of, columns);
     append("along rows", share_of, columns);
@@ -159,7 +160,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
   return columns;
 }
 
-/// A number of the single run of a group without randomness.
+/// A number from the single run of a group without randomness.
 template <class Place>
 ResultColumn column_of_run(const char* name, Place number) {
   return {name, [=](const Group& group) { return console::plain(number(group.first_row), 4); }};

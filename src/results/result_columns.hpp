@@ -14,20 +14,18 @@ struct ResultColumn {
   std::function<std::string(const Group&)> cell;
 };
 
-/// A clogging length, or its lower bound without clogs, and the interval of the length; a dash where a number
-/// is unknown.
+/// A clogging length with its interval; without clogs, a lower bound. A dash replaces an unknown number.
 std::string length_text(const fit::CloggingLength& clogging);
 std::string interval_text(const fit::CloggingLength& clogging);
 
 /// The columns of the scene's results.
 /// @param groups  not empty
-/// @param has_laboratory  whether columns in laboratory units follow; the speeds in these are those of all
-/// runs
+/// @param has_laboratory  whether columns in laboratory units follow. Their speeds are those of all runs.
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory);
 
-/// Whether the table shows the mechanisms: it does if clogs differ in them, or if there are clogs and some
-/// runs have been excluded.
+/// Whether the table shows the mechanisms. It does if clogs differ in their mechanisms, or if there are clogs
+/// and some runs have been excluded.
 bool are_mechanisms_shown(const std::vector<Group>& groups);
 bool have_some_broken(const std::vector<Group>& groups);
 

@@ -19,7 +19,7 @@ using Entry = SweepRuns::Entry;
 /// Runs by their identity.
 using Known = std::unordered_map<std::string, std::unique_ptr<Entry>>;
 
-/// A salvaged file may lack its config. In this case, this function compares the rows with the settings.
+/// A salvaged file may lack its config. This function then compares the rows with the settings.
 std::string settings_that_differ(const Resumption& sweep, const store::SweepFile& table) {
   if (!attribute(table.provenance, "config").empty())
     return differing_keys(stored_settings(sweep.path, table.provenance), sweep.settings);
@@ -44,7 +44,7 @@ void refuse_other_sweep(const Resumption& sweep, const store::SweepFile& table) 
                             differing, remedy));
 }
 
-/// Refuses runs of another sweep, which may have left its journal here.
+/// Refuses runs of another sweep. They are in the journal if that sweep had the same path.
 void refuse_foreign_records(const Resumption& sweep, const std::vector<LatestRow>& runs) {
   const auto is_new = [](const LatestRow& run) { return !run.in_table; };
   if (std::ranges::none_of(runs, is_new)) return;
@@ -57,17 +57,18 @@ void refuse_foreign_records(const Resumption& sweep, const std::vector<LatestRow
                       sweep.path, store::journal_path(sweep.path), differing));
 }
 
-/// Whether the row belongs to the run that has its task number in the plan. Usually all rows do, because the
-/// sweep resumes unchanged.
+/// Whether the row belongs to the run with this row's task number in the plan. If the sweep resumes
+/// unchanged, all rows do.
 bool is_of_its_task(const sweep::RunRow& row, const sweep::Plan& plan) {
   return row.task >= 0 && row.task < plan.size() &&
          sweep::identity(row) == sweep::identity(sweep::describe(plan.task(row.task)));
 }
 
-/// Gives tasks their runs, and those that have none the run of another laboratory, on which runs do not
-/// depend. A row that no task of its own laboratory needs changes its laboratory; others are copied.
+/// Assigns the runs to their tasks. A task without a run gets the run of another laboratory, because runs do
+/// not depend on the laboratory. If no task of the row's own laboratory needs the row, its laboratory is
+/// changed; otherwise the row is copied.
 void find_runs(Known& known, std::int64_t num_tasks, const sweep::Plan& plan, SweepRuns& runs) {
-  std::unordered_map<std::string, std::string> others;  // identities of runs by those in any laboratory
+  std::unordered_map<std::string, std::string> others;  // by identity without a laboratory
   std::vector<std::int64_t> without;
   std::unordered_map<std::string, const Entry*> in_plan;
   const auto task_row = [&](std::int64_t task) { return sweep::describe(plan.task(task)); };
@@ -104,7 +105,7 @@ std::int64_t num_tasks_known(const Resumption& sweep, const Known& known, const 
   for (const auto& [run, entry] : known)
     last_seed = std::max(last_seed, std::int64_t{entry->row.parameters.seed});
   std::int64_t number = std::min(sweep.plan.size(), std::max(sweep.num_wanted, std::ssize(runs.by_task)));
-  // Seeds that may be added later follow in increasing order: no later seed has begun yet.
+  // Further seeds are added in increasing order, so no seed after this one has begun.
   while (!known.empty() && number < sweep.plan.size() && sweep.plan.task(number).seed <= last_seed) ++number;
   return number;
 }
@@ -131,7 +132,7 @@ std::int64_t adopt(const Resumption& sweep, store::SweepFile table, std::vector<
       continue;
     }
     std::unique_ptr<Entry>& run = are_usual ? runs.place_of(row.task) : known[sweep::identity(row)];
-    // Rows are moved, because a large sweep has memory for each row just once.
+    // Rows are moved, not copied: with a large sweep, there is memory for only one copy of each row.
     if (!run) run = std::make_unique<Entry>(one.record ? std::move(*one.record) : Entry{std::move(row), {}});
   }
   const std::int64_t num_tasks = num_tasks_known(sweep, known, runs);

@@ -19,9 +19,9 @@ struct Resumption {
   std::int64_t num_wanted;  ///< number of tasks, from the start of the plan, that are requested
 };
 
-/// Adopts the runs of the table and the journal of earlier sessions, and gives them their tasks. Returns the
-/// number of physically impossible rows, which are left out. @throws Error if the table or the journal
-/// belongs to another sweep
+/// Takes the runs from the table and the journal of earlier sessions, and assigns them to their tasks.
+/// Returns the number of physically impossible rows; these rows are excluded. @throws Error if the table or
+/// the journal belongs to another sweep
 std::int64_t adopt(const Resumption& sweep, store::SweepFile table,
                    std::vector<store::Journal::Entry> records, SweepRuns& runs);
 

@@ -14,6 +14,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/wording.hpp"
+#include "clog/sweep/keys.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -22,7 +23,6 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-constexpr const char* seeds_key = "seeds";
 constexpr std::size_t longest_list = 2500;  // length of a key's text; longer lists become points
 
 std::string identity_without_seed(sweep::RunRow run) {
@@ -73,10 +73,9 @@ std::optional<Texts> texts_of(const sweep::RunRow& row, const sweep::Plan& plan)
   Texts texts = plan.texts(0);
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const sweep::Key& key = sweep::keys()[i];
-    if (key.name == seeds_key) continue;
+    if (key.is_ensemble()) continue;
     if (!key.parameter) {
-      texts[i] = row.preset == first.preset || row.preset == "none" || row.preset == "custom" ? texts[i]
-                                                                                              : row.preset;
+      if (row.preset != first.preset && sweep::has_named_preset(row)) texts[i] = row.preset;
       continue;
     }
     const ParameterValue value = key.parameter->get(row.parameters);
@@ -130,7 +129,7 @@ namespace {
 bool describe_run(const Texts& texts, const sweep::RunRow& row, const sweep::Plan& plan) try {
   sweep::Settings settings;
   set_all(settings, texts);
-  settings.set(seeds_key, std::to_string(row.parameters.seed));
+  settings.set(sweep::seeds_key().name, std::to_string(row.parameters.seed));
   for (const auto& [name, circles] : plan.circle_files()) settings.attach(name, circles);
   return is_run(sweep::Plan(settings).task(0), row);
 } catch (const Error&) {  // the row is from a version with other keys or ranges
@@ -204,7 +203,7 @@ sweep::Settings RunList::settings() const {
   if (is_product && size == sets_.size()) {
     for (std::size_t i = 0; i < differing.size(); ++i)
       settings.set(sweep::keys()[differing[i]].name, lists[i]);
-    settings.set(seeds_key, seeds.front());
+    settings.set(sweep::seeds_key().name, seeds.front());
     return settings;
   }
   settings.set_points(points(differing));
@@ -214,7 +213,7 @@ sweep::Settings RunList::settings() const {
 sweep::Points RunList::points(const std::vector<std::size_t>& differing) const {
   sweep::Points points;
   for (const std::size_t place : differing) points.keys.push_back(sweep::keys()[place].name);
-  points.keys.emplace_back(seeds_key);
+  points.keys.push_back(sweep::seeds_key().name);
   for (const ParameterSet& set : sets_)
     for (const std::string& seeds : texts_of(set.seeds)) {
       Texts& row = points.rows.emplace_back();

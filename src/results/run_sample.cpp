@@ -35,8 +35,7 @@ RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunP
           .is_over = !sweep::is_unfinished(row.status)};
 }
 
-/// Tasks spread over parameter sets and, if there are few sets, over seeds; tasks of the same array are
-/// adjacent.
+/// Tasks spread over parameter sets and, if there are few sets, over seeds. Tasks of one array are adjacent.
 std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   constexpr std::int64_t most_tasks = 24;
   constexpr std::int64_t most_seeds = 4;  // with many parameter sets, because arrays may take long to build
@@ -101,7 +100,7 @@ StoredSample stored_runs(const sweep::Plan& plan, const std::string& path) {
 
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
   constexpr double fewest_seconds =
-      0.1;                       // time for a run if its array has used up the run's share of the time [s]
+      0.1;  // time for a run if building its array has used up the run's share of the time [s]
   constexpr double grace = 0.5;  // time to wait for the last answer [s]
   const Clock::time_point begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
@@ -116,7 +115,7 @@ Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
     const double end = elapsed() + share;
     const auto job = jobs(tasks[i], {});
     const auto answers = [&] { return job->refresh(); };
-    advance_until(*job, seconds_to_try + grace, answers);  // time of its array and its release
+    advance_until(*job, seconds_to_try + grace, answers);  // time for its array and its release
     const sweep::RunRow first = job->row();
     advance_until(*job, std::max(end, elapsed() + fewest_seconds), [] { return false; });
     advance_until(*job, seconds_to_try + grace, answers);

@@ -12,11 +12,11 @@ namespace clog::results {
 
 double work_per_step(const RunParameters& run);
 
-/// Sample of a sweep's runs from which its cost is estimated.
+/// A sample of a sweep's runs, used to estimate the cost of the sweep.
 struct Sample {
   std::vector<RunCost> costs;
   std::string source;
-  std::string failure;  ///< why the first run that could not begin failed; `costs` does not contain such runs
+  std::string failure;  ///< why the first run that could not begin failed; `costs` excludes such runs
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
   double spacing = 0;          ///< obstacle spacing of such a run [sigma]
@@ -37,8 +37,8 @@ struct StoredSample {
 };
 StoredSample stored_runs(const sweep::Plan& plan, const std::string& path);
 
-/// Runs short pieces of some tasks. The jobs may be computed by another process, which answers between
-/// slices of its work; a job that takes too long, such as a release that does not come to rest, is dropped.
+/// Runs short pieces of some tasks. Another process may compute the jobs; it answers between slices of its
+/// work. A job that takes too long is dropped, such as a release that does not come to rest.
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs);
 SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample);
 

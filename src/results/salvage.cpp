@@ -18,8 +18,8 @@
 namespace clog::results {
 namespace {
 
-/// Fixed values by which records of this sweep are recognised; nullopt if the sweep's config is lost, or of
-/// another version.
+/// The fixed values that identify records of this sweep; nullopt if the sweep's config is lost, or of another
+/// version.
 std::optional<FixedValues> fixed_values(const std::string& path, const store::SweepFile& table) try {
   return FixedValues(stored_plan(path, table), stored_settings(path, table.provenance));
 } catch (const Error& error) {
@@ -65,7 +65,8 @@ Salvage salvage(const std::string& path) {
   for (const LatestRow& run : latest_rows(found.table.rows, records)) {
     const bool is_unfinished = sweep::is_unfinished(run.row().status);
     if (run.record && !is_unfinished && !run.was_final()) ++found.num_from_journal;
-    // Rows are moved, because a large sweep has memory for each row just once; that of a snapshot is copied.
+    // Rows are moved, because the memory of a large sweep suffices for one copy of each row. Only the row of
+    // a snapshot is copied.
     if (run.record && is_unfinished && !run.record->snapshot.empty()) {
       rows.push_back(run.row());
       found.snapshots.push_back(std::move(*run.record));

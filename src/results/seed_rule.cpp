@@ -12,6 +12,7 @@
 #include "clog/fit/clogging_length.hpp"
 #include "clog/results/groups.hpp"
 #include "clog/sweep/columns.hpp"
+#include "clog/sweep/keys.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -119,7 +120,8 @@ std::string outcome(const SeedRule& rule, const sweep::Plan& plan) {
 }
 
 GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, std::int64_t most_seeds) {
-  const std::vector<std::string>& seeds = settings.values("seeds");
+  const std::string& key = sweep::seeds_key().name;
+  const std::vector<std::string>& seeds = settings.values(key);
   const auto first_seeds = static_cast<std::int64_t>(seeds.size());
   const sweep::Plan plan(settings);
   for (std::int64_t group = 0; group < plan.num_groups(); ++group)
@@ -142,8 +144,8 @@ GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, st
     throw Error(
         fmt::format("invalid --most-seeds={} (seeds after {} would exceed {}) begin with smaller seeds",
                     most_seeds, last, largest_seed));
-  sweep.settings.set(
-      "seeds", fmt::format("{},{}..{}", settings.text("seeds"), last + 1, last + most_seeds - first_seeds));
+  sweep.settings.set(key,
+                     fmt::format("{},{}..{}", settings.text(key), last + 1, last + most_seeds - first_seeds));
   return sweep;
 }
 

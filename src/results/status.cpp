@@ -20,7 +20,7 @@ namespace {
 using sweep::RunRow;
 
 /// Times of the parameter sets of the last config. With --until-precision, sets may request different numbers
-/// of seeds. These numbers are unknown here, so each set counts with their mean.
+/// of seeds. These numbers are unknown here, so each set counts with the mean number.
 std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep::Plan& plan,
                                     std::int64_t num_wanted) {
   std::vector<SetTimes> sets(static_cast<std::size_t>(plan.num_groups()));

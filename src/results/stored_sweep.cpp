@@ -70,14 +70,14 @@ void say_unread(const std::string& path, const std::string& consequence, const E
   console::say(fmt::format("{}: {}: {}", path, consequence, why.what()));
 }
 
-/// Counts runs that have ended according to the journal of a stopped sweep, but not according to its table.
+/// Counts runs of a stopped sweep that have ended according to the journal, but not according to the table.
 static std::int64_t num_ended_in_journal(const std::string& path, std::span<sweep::RunRow> rows) {
   std::optional<store::Journal::Contents> contents;
   try {
     const std::string journal = store::journal_path(path);
     if (store::Journal::is_open(journal)) return 0;
     contents = store::Journal::look(journal);
-  } catch (const Error& error) {  // the journal is of another version, or another kind of file
+  } catch (const Error& error) {  // the journal is of another version, or the file is no journal
     say_unread(path, "runs that only its journal has are missing here", error);
   }
   if (!contents) return 0;
@@ -126,8 +126,8 @@ sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
   });
 }
 
-/// Whether the key has a list of its own, or a list in points. The values of other keys may vary, too, but
-/// they follow from a word in a list.
+/// Whether the key has a list, or a list in points. Values of other keys may vary, too, but these values
+/// follow from a word in a list.
 static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
   const std::vector<std::string>& keys = settings.points().keys;
   return settings.values(key.name).size() > 1 || std::ranges::find(keys, key.name) != keys.end();

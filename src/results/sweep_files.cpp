@@ -13,8 +13,8 @@
 namespace clog::results {
 namespace {
 
-/// Keeps `sessions` short, however often a sweep is resumed: the oldest lines are removed, and a long last
-/// line is cut.
+/// Limits the length of `sessions`, however often a sweep is resumed: the oldest lines are removed, and a
+/// long last line is cut.
 std::string latest_lines(std::string text) {
   constexpr std::size_t longest_line = 2000;
   constexpr std::size_t longest = 30'000;
@@ -42,7 +42,7 @@ SweepFiles::SweepFiles(std::string path, const sweep::Plan& plan, store::Provena
 }
 
 SweepFiles::Earlier SweepFiles::take_earlier() {
-  store::SweepFile table = read_table();  // before the records, which are refused without a table
+  store::SweepFile table = read_table();  // first, because records without a table are refused
   return {std::move(table), take_records()};
 }
 
@@ -110,7 +110,7 @@ void SweepFiles::write_down(const Entry& entry) {
 }
 
 void SweepFiles::tick() {
-  // Writing the whole table takes longer with more runs, and the journal must be rewritten now and then.
+  // With more runs, writing the whole table takes longer, and the journal must sometimes be rewritten.
   // Together, these two tasks may take two per cent of the time.
   const Clock::time_point now = Clock::now();
   if (publication_.valid()) {
@@ -127,8 +127,8 @@ void SweepFiles::tick() {
   begin_publication();
 }
 
-/// The row that readers see: a run that will be tried again is not failed yet, and its failed attempt has no
-/// distance.
+/// The row that readers see. If the run will be tried again, the row is that of a run at its release, because
+/// the failed attempt has no result.
 sweep::RunRow SweepFiles::published(sweep::RunRow row) const {
   if (!runs_.tries_again(row)) return row;
   reset_to_release(row);
@@ -153,14 +153,15 @@ void SweepFiles::publish() {
   end_publication();
 }
 
-/// Starts to write the table in another thread. If the table was replaced or the journal removed, writes
-/// everything once more and ends the sweep. A removed table is written again.
+/// Starts to write the table in another thread. A removed table is written again. If the table was replaced,
+/// writes it under another name and ends the sweep. If the journal was removed, makes a new one, writes the
+/// table, and ends the sweep.
 void SweepFiles::begin_publication() {
   const std::string there = place_.stamp();
   if (!there.empty() && there != stamp_) rescue();
   const bool has_journal = journal_.is_there();
   if (!has_journal) {
-    if (!journal_.make_anew(place_)) rescue();
+    if (!journal_.recreate(place_)) rescue();
     journal_.rewrite(runs_.all());
   }
   journal_.begin();
@@ -202,8 +203,8 @@ void SweepFiles::rescue() {
       path(), rescued().path()));
 }
 
-/// Rewrites the journal for the time when the table will have the results of all records before `place`. The
-/// journal then needs only the unfinished runs, and the records from `place` on.
+/// Rewrites the journal in advance. It will be used when the table contains the results of all records before
+/// `place`. Then the journal needs only the unfinished runs, and the records from `place` on.
 void SweepFiles::prepare_journal(const std::vector<const Entry*>& all, std::uint64_t place) {
   std::deque<Entry> unfinished;
   std::vector<const Entry*> needed;

@@ -32,7 +32,8 @@ void SweepState::want(const std::vector<std::int64_t>& tasks) {
   for (const std::int64_t task : tasks) request(task);
 }
 
-/// Requests a task that is not over, or lets it wait for its twin. Tasks are requested in increasing order.
+/// Requests a task that is not over. If it has a twin, it waits for the twin instead. Tasks are requested in
+/// increasing order.
 void SweepState::request(std::int64_t task) {
   if (const Entry* const run = runs_.find(task); run && runs_.is_over(run->row)) return;
   const std::optional<std::int64_t> twin = plan_->twin(task);
@@ -45,7 +46,7 @@ void SweepState::request(std::int64_t task) {
     tasks_left_.push_back(task);
 }
 
-/// Gives a task the row of its twin.
+/// Copies the row of a twin to its task.
 SweepState::Entry& SweepState::copy_to(std::int64_t task, const Entry& twin) {
   std::unique_ptr<Entry> copy = copy_without_costs(twin);
   copy->row.parameters.laboratory = plan_->task(task).laboratory;

@@ -1,7 +1,6 @@
 #include "clog/results/usual_parameters.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "clog/core/parameters/schema.hpp"
@@ -17,7 +16,7 @@ namespace {
 RunParameters defaults_for(const sweep::RunRow& row) {
   sweep::Settings settings;
   settings.set("model", name(row.parameters.model));
-  if (row.preset != "none" && row.preset != "custom") settings.set("preset", row.preset);
+  if (sweep::has_named_preset(row)) settings.set("preset", row.preset);
   RunParameters run;
   for (const sweep::Key& key : sweep::keys()) key.apply(run, settings.values(key.name).front());
   if (run.model == Model::sp) run.wall_stiffness = row.parameters.wall_stiffness;
@@ -36,23 +35,10 @@ bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
          column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());
 }
 
-/// The default density. A share of the saturated density is a different number for each gap and diameter.
-Value usual_density(RunParameters run) {
-  run.obstacles.density = ObstacleParameters().density;
-  return sweep::describe(resolve(run)).obstacle_density;
-}
-
-/// Whether the array's density follows from gaps, diameters or circles.
-bool has_derived_density(const sweep::RunRow& row) {
-  const ObstacleParameters& obstacles = row.parameters.obstacles;
-  return obstacles.layout != ObstacleLayout::random ||
-         (!obstacles.density.per_area && !obstacles.density.share);
-}
-
 enum class Others { all, independent };
 
-/// Whether the value is automatic for the row's other parameters: for all of them, or for those that do not
-/// follow from this value.
+/// Whether `auto` would give this value, computed either from all other parameters of the row, or only from
+/// those that do not follow from this value.
 bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
   if (are_circles_missing(row.parameters)) return true;  // unknown without the circles
@@ -83,22 +69,12 @@ bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) {
          (is_automatic_with(Others::all, column, row) && !are_followers_automatic(column, row));
 }
 
-bool has_parameter(const sweep::Column& column, const RunParameters& run) {
-  if (column.name == "preset") return run.model == Model::dp;
-  return !column.parameter || column.parameter->applies_to(run);
-}
-
 Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
-  if (column.name == "obstacle_density" && has_derived_density(row)) return {};
-  if (column.parameter && !column.parameter->applies_to(row.parameters)) return {};
-  if (is_automatic(column, row)) return {};
-  const DpParameters& dp = row.parameters.dp;
-  if (column.name == "perimeter_stiffness" && dp.perimeter_spring == PerimeterSpring::rest &&
-      dp.perimeter_stiffness && dp.line_tension > 0) {
-    constexpr double figures = 1e9;  // the ratio has round-off
-    return std::round(figures * *dp.perimeter_stiffness / dp.line_tension) / figures;
-  }
-  return column.get(row);
+  if (!column.applies_to(row.parameters) || is_automatic(column, row)) return {};
+  if (column.compared) return column.compared(row);
+  const bool has_rule = column.parameter && column.parameter->compared;
+  const Value value = has_rule ? column.parameter->compared(row.parameters) : Value();
+  return value == Value() ? column.get(row) : value;
 }
 
 std::vector<Value> usual_parameters(const sweep::RunRow& row) try {
@@ -106,8 +82,7 @@ std::vector<Value> usual_parameters(const sweep::RunRow& row) try {
   std::vector<Value> usual = parameter_values(sweep::describe(resolve(defaults_for(row))));
   for (std::size_t i = 0; i < usual.size(); ++i) {
     const sweep::Column& column = *group_columns()[i];
-    if (column.name == "obstacle_density")
-      usual[i] = run.obstacles.density.per_area ? usual_density(run) : column.get(row);
+    if (column.usual) usual[i] = column.usual(row);
     if (is_of_own_circles(column, run)) usual[i] = column.parameter->get(RunParameters());
     if (column.may_be_automatic(run)) usual[i] = is_automatic(column, row) ? column.get(row) : Value();
   }

@@ -30,9 +30,10 @@ nlohmann::ordered_json step_json(const Step& step, const char* name, int num_end
 }
 inline constexpr int few_digits = 4;
 inline constexpr int all_digits = 17;  ///< enough for each number to have its own text
-/// The fewest digits, four or more, with which different numbers among the values have different texts.
+/// The smallest number of digits, at least four, with which different numbers among the values have different
+/// texts.
 int distinct_digits(const std::vector<sweep::Value>& values);
-/// Text for a printed table: so many significant digits of a number; `-` for an unset value. Escapes control
+/// Text for a printed table, with this number of significant digits; `-` for an unset value. Escapes control
 /// characters, which the words of a foreign file may contain.
 /// @param digits  from all_digits on, those that identify the number
 std::string short_text(const sweep::Value& value, int digits = few_digits);

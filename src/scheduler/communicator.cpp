@@ -19,9 +19,9 @@ namespace {
 /// Variables in which launchers give a process its rank.
 constexpr const char* rank_variables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 
-/// Tells Open MPI that a rank that no launcher has started is alone. Otherwise Open MPI would start a daemon,
+/// Tells Open MPI that a rank without a launcher is a single rank. Otherwise Open MPI would start a daemon,
 /// which looks for ssh, and the rank would end when the daemon is killed. Open MPI would also use a folder
-/// that all single ranks of a user share, so a rank that starts while another rank ends might fail.
+/// that all single ranks of a user share. A rank that starts while another rank ends might then fail.
 void stand_alone_without_launcher() {
   for (const char* name : rank_variables)
     if (std::getenv(name)) return;
@@ -45,7 +45,7 @@ int count_of(std::size_t num_bytes) {
 
 Communicator::Communicator(int& argc, char**& argv) {
   stand_alone_without_launcher();
-  int provided = 0;  // another thread publishes the table; only this one calls MPI
+  int provided = 0;  // another thread publishes the table; only this thread calls MPI
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);

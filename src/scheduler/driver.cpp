@@ -72,7 +72,7 @@ class Driver {
     if (is_expecting_) progress_.finish();
   }
   bool was_interrupted() const { return was_interrupted_; }
-  /// Why the sweep must stop now; nullptr: it must not.
+  /// The reason why the sweep must stop now; nullptr if it need not stop.
   const char* reason_to_stop() const {
     if (console::stop_signalled()) return "a signal";
     const std::chrono::duration<double, std::ratio<3600>> hours = Clock::now() - begin_;
@@ -97,7 +97,7 @@ class Driver {
     return start;
   }
 
-  /// Stores a report without the reason for a restart, which goes to the log (see sweep::Job::row()).
+  /// Stores a report without the reason for a restart. That reason goes to the log (see sweep::Job::row()).
   void store(sweep::Report& report) {
     sweep::RunRow& row = report.row;
     if (row.status != RunStatus::failed && !row.message.empty()) {
@@ -112,12 +112,12 @@ class Driver {
 
   void end(sweep::Report report) {
     state_.rank_is_free();
-    // A resumed task that is stopped before its first report still has the state of the stored snapshot and
-    // row.
+    // If a resumed task is stopped before its first report, its state is still that of the stored snapshot
+    // and row.
     if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = state_.row(report.row.task);
       report.row.status = RunStatus::interrupted;
-      // The state of the sweep adds the earlier cost.
+      // The sweep's state adds the earlier cost.
       report.row.wall_seconds = report.row.processor_seconds = 0;
     }
     store(report);
@@ -141,7 +141,7 @@ class Driver {
 /// Requests the next round from the state of the sweep, if the rule needs one. Returns whether it does.
 bool begin_round(results::SeedRule& rule, results::SweepState& state) {
   std::vector<std::int64_t> next = rule.next_round([&](std::int64_t task) { return state.row(task).status; });
-  // An earlier call with a higher precision may have started more tasks than this call needs. They are
+  // An earlier call with a higher precision may have started more tasks than this call needs. These tasks are
   // finished, too.
   if (next.empty()) next = state.tasks_begun();
   if (next.empty()) return false;

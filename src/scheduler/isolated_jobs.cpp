@@ -33,22 +33,22 @@ using Clock = std::chrono::steady_clock;
 
 enum Kind : std::int64_t {
   describe_jobs = 1,  // rank -> helper: the description
-  process_began,      // helper -> rank: its pid, once nobody else has its socket; -1 if it never began
+  process_began,      // helper -> rank: the pid, once only the process has its socket; -1 if it did not begin
   process_ended,      // helper -> rank: an Ending
-  begin,              // rank -> process: a task's number and the snapshot to begin at
-  report,             // rank -> process: asks for progress (empty); the answer: a row and its snapshot
+  begin,              // rank -> process: a task's number, and its snapshot
+  report,             // rank -> process: requests progress (empty); the answer: a row and its snapshot
   over,               // process -> rank: the last row
-  drop,               // rank -> process: work no more on this (empty)
+  drop,               // rank -> process: drop the job (empty)
 };
 
-/// Timeout for answers that a process gives at once, unless it has been stopped.
-constexpr std::chrono::milliseconds patience{2000};
-/// Timeout for the start of a process, which takes long when memory is scarce.
-constexpr std::chrono::milliseconds patience_for_start{20'000};
+/// Timeout for answers. A process answers at once, unless somebody has stopped it.
+constexpr std::chrono::milliseconds answer_timeout{2000};
+/// Timeout for the start of a process. A start takes long if memory is scarce.
+constexpr std::chrono::milliseconds start_timeout{20'000};
 
 /// How a process ended.
 struct Ending {
-  int fork_error = 0;  // errno of fork(), if the process never began
+  int fork_error = 0;  // errno of fork(), if there was no process
   int code = 0;        // si_code of SIGCHLD: CLD_EXITED or another
   int status = 0;      // exit code, or number of the signal
 };
@@ -73,22 +73,22 @@ std::string describe(const Ending& ending) {
                      signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
-/// Makes this process die with its parent. Lets it ignore the signals that stop a sweep, because the rank
-/// handles these.
+/// Makes this process end with its parent. It then ignores the signals that stop a sweep, because the rank
+/// handles them.
 void depend_on_parent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(0);  // the parent died before the call
+  if (getppid() != parent) _exit(0);  // the parent ended before the call
   for (const int signal : console::stop_signals) std::signal(signal, SIG_IGN);
 }
 
-/// Libraries of MPI, such as UCX, install handlers for crashes when they are loaded, and may wait in them for
-/// ever. In processes forked from now on a crash is fatal.
+/// Libraries of MPI, such as UCX, install handlers for crashes when they are loaded. Such a handler may wait
+/// for ever. After this call, a crash ends every forked process.
 void let_crashes_kill() {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) std::signal(signal, SIG_DFL);
 }
 
-/// When memory runs out, the kernel should kill this process rather than the helper or the rank, without
-/// which the sweep ends.
+/// If memory runs out, the kernel should kill this process rather than the helper or the rank: without these
+/// two, the sweep ends.
 void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
 /// Main function of a computing process. An uncaught exception is a crash like any other.
@@ -97,7 +97,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
   std::int64_t number = 0;
   bool is_over = true;
   while (true) {
-    // There is at least one slice between two messages, so that even a task that is stopped at once has a
+    // There is at least one slice between two messages. So a task that is stopped at once still has a
     // snapshot.
     while (!is_over) {
       is_over = job->advance();
@@ -120,8 +120,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
   }
 }
 
-/// Main function of the helper: forks one process after the other, each with a socket that the rank made for
-/// it.
+/// Main function of the helper: forks one process after the other. The rank makes a socket for each of them.
 [[noreturn]] void start_processes(const Socket& rank, const IsolatedJobs::Describe& describe) noexcept {
   const auto description = rank.receive();
   if (!description) _exit(0);
@@ -143,8 +142,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
     socket.close();
     rank.send(process_began, 0, to_bytes(process, {}));
     if (process > 0) {
-      // The process stays a zombie until the rank asks for the next one, so its pid is not reused and the
-      // rank's kill cannot hit another process.
+      // The process stays a zombie until the rank requests the next one. So its pid is not reused, and a kill
+      // by the rank cannot hit another process.
       siginfo_t end{};
       retried([&] { return waitid(P_PID, process, &end, WEXITED | WNOWAIT); });
       ending.code = end.si_code;
@@ -161,7 +160,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
 class IsolatedJobs::Processes {
  public:
   Processes(Socket helper, pid_t helper_pid) : helper_(std::move(helper)), helper_pid_(helper_pid) {
-    helper_.limit_halts(patience);
+    helper_.limit_halts(answer_timeout);
   }
 
   void send_description(const std::string& description) {
@@ -173,7 +172,7 @@ class IsolatedJobs::Processes {
 
   /// Starts a job in a live process, or detects that the helper is dead. Returns the job's number.
   std::int64_t begin_job(std::int64_t task, std::span<const std::byte> snapshot) {
-    // Drain messages of an earlier job, and notice a process that has died since.
+    // Drains messages of an earlier job, and detects whether the process has ended since.
     while (process_.is_open() && process_.wait(std::chrono::milliseconds(0)))
       if (!process_.receive()) bury();
     ++last_job_;
@@ -185,13 +184,13 @@ class IsolatedJobs::Processes {
 
   const Socket& process() const { return process_; }
 
-  /// Kills the process unless it is dead already. Returns how the process ended; nullopt if the helper, which
-  /// reports this, is dead or stopped. Then the rank stops using the helper.
+  /// Kills the process, if it is still alive. Returns how the process ended. Returns nullopt if the helper,
+  /// which reports this, has ended or been stopped; the rank then stops using the helper.
   std::optional<Ending> bury() {
     process_.close();
     if (process_id_ > 0)
-      kill(process_id_, SIGKILL);  // nobody else gets this pid until the helper starts the next process
-    if (helper_.wait(patience))
+      kill(process_id_, SIGKILL);  // no other process gets this pid until the helper starts the next process
+    if (helper_.wait(answer_timeout))
       if (const auto message = helper_.receive()) return from_bytes<Ending>(message->bytes).first;
     give_up_helper();
     return std::nullopt;
@@ -204,13 +203,13 @@ class IsolatedJobs::Processes {
   pid_t process_id_ = -1;
   std::int64_t last_job_ = 0;
 
-  /// When the helper has replied, only the new process holds the other end of its socket. So the rank notices
-  /// the death of this process.
+  /// After the helper's reply, only the new process holds the other end of its socket. So the rank detects
+  /// the end of this process.
   void start_process() {
     auto [mine, theirs] = Socket::pair();
-    mine.limit_halts(patience);
+    mine.limit_halts(answer_timeout);
     helper_.send_socket(theirs);
-    const auto began = helper_.wait(patience_for_start) ? helper_.receive() : std::nullopt;
+    const auto began = helper_.wait(start_timeout) ? helper_.receive() : std::nullopt;
     if (!began) return give_up_helper();
     process_id_ = from_bytes<pid_t>(began->bytes).first;
     process_ = std::move(mine);

@@ -28,7 +28,7 @@ std::optional<MachineTrust::Suspect> MachineTrust::suspect(const std::string& na
     --num_in_service_;
     return found;
   }
-  // If no machine succeeds with anything, all tasks seem to fail on all machines.
+  // If no machine succeeds with any task, all tasks seem to fail on all machines.
   const auto is_trustworthy = [this](const auto& other) { return is_trusted(other.second); };
   if (may_work(machine) || (has_let_go_ && std::ranges::none_of(machines_, is_trustworthy)))
     return std::nullopt;
@@ -65,7 +65,7 @@ std::optional<MachineTrust::Suspect> MachineTrust::failed(std::int64_t task, int
   return suspect(name);
 }
 
-void MachineTrust::let_go() {
+void MachineTrust::end_holds() {
   has_let_go_ = true;
   for (auto& [name, machine] : machines_)
     if (machine.in_service) machine.failures.clear();

@@ -22,10 +22,10 @@ using sweep::JobFactory;
 using Clock = std::chrono::steady_clock;
 
 enum Tag : int {
-  ready = 1,  // worker -> master: give me a task (empty)
-  ended,      // worker -> master: a Report, and give me a task
+  ready = 1,  // worker -> master: requests a task (empty)
+  ended,      // worker -> master: a Report; requests a task
   running,    // worker -> master: a Report
-  task,       // master -> worker: a task's number, or no_more_tasks, and the snapshot to begin at
+  task,       // master -> worker: a task's number, or no_more_tasks, and the task's snapshot
   stop,       // master -> worker: end the present task as interrupted (empty)
 };
 constexpr std::int64_t no_more_tasks = -1;
@@ -45,14 +45,14 @@ class Backoff {
   std::chrono::microseconds pause_ = shortest;
 };
 
-/// A task being worked on by this rank, which reports on it from time to time.
+/// A task that this rank computes. The rank reports on it from time to time.
 class Work {
  public:
   Work(std::unique_ptr<Job> job, int rank, std::chrono::milliseconds report_interval)
       : job_(std::move(job)), rank_(rank), interval_(report_interval) {}
 
   bool advance() { return job_->advance(); }
-  /// The final report of a task that has ended or is being stopped.
+  /// The final report of a task that has ended or must stop.
   Report last_report() {
     constexpr std::chrono::seconds longest_wait{2};
     const Clock::time_point deadline = Clock::now() + longest_wait;
@@ -99,7 +99,7 @@ class Master {
       const bool served = serve();
       const bool worked = work();
       answer_waiting();
-      if (!worked && nobody_can_work()) schedule_.trust.let_go();
+      if (!worked && nobody_can_work()) schedule_.trust.end_holds();
       if (Clock::now() - last_idle_ > std::chrono::milliseconds(100)) {
         last_idle_ = Clock::now();
         events_.idle();
@@ -139,7 +139,8 @@ class Master {
     return running_.empty() && (stopping_ || !has_tasks() || schedule_.trust.num_in_service() == 0);
   }
 
-  /// Whether tasks remain while every machine is on hold or waits for one on hold.
+  /// Whether tasks remain that no machine can take, because every machine is on hold or waits for one on
+  /// hold.
   bool nobody_can_work() const {
     const bool all_wait = static_cast<int>(waiting_.size()) + num_dismissed_ == ranks_.size() - 1;
     return running_.empty() && all_wait && !is_over();
@@ -157,7 +158,7 @@ class Master {
     if (stopping_ || !schedule_.trust.may_work(rank)) return std::nullopt;
     auto failed = std::find_if(failed_tasks_.begin(), failed_tasks_.end(),
                                [&](std::int64_t task) { return schedule_.trust.is_next_for(task, rank); });
-    // If no other task is left, a trusted rank retries a failed task rather than idle.
+    // If no other task is left, a trusted rank retries a failed task instead of idling.
     if (failed == failed_tasks_.end() && schedule_.tasks.empty() && schedule_.trust.is_trusted(rank))
       failed = failed_tasks_.begin();
     std::int64_t next = no_more_tasks;
@@ -176,7 +177,7 @@ class Master {
     return Beginning{next, std::move(start.snapshot)};
   }
 
-  /// Updates the schedule when a task ends. Reports a failure immediately, before the task can be handed out
+  /// Updates the schedule when a task ends. Reports a failure at once, before the task can be handed out
   /// again.
   void take_back(Report& report) {
     const std::int64_t ended = report.row.task;
@@ -184,7 +185,7 @@ class Master {
     report.row.attempt = attempt;
     schedule_.tasks.ended(ended, seconds());
     if (report.row.status == RunStatus::interrupted) return;
-    // Runs that diverge or cross themselves do so on every rank.
+    // Runs that diverge or cross themselves do so on every rank, so they are not retried.
     if (!sweep::may_succeed_later(report.row)) {
       for (const auto& suspect : schedule_.trust.succeeded(ended, rank)) doubt(suspect);
       return;
@@ -201,7 +202,7 @@ class Master {
 
   void withdraw_failure(std::int64_t task, const std::string& machine) {
     if (running_.contains(task) || !withdrawn_.insert(task).second)
-      return;  // another machine tries the task, now or later
+      return;  // another machine tries the task, either now or later
     if (std::find(failed_tasks_.begin(), failed_tasks_.end(), task) == failed_tasks_.end())
       failed_tasks_.push_back(task);
     events_.failure_withdrawn(task, machine);
@@ -296,7 +297,7 @@ class Worker {
       }
       send(ended, work.last_report());
     }
-    take_stop();  // drain a stop that crossed our last report
+    take_stop();  // drains a stop that was sent before our last report arrived
   }
 
  private:
@@ -341,7 +342,7 @@ SweepEnd run_tasks(const Communicator& ranks, Schedule& schedule, const JobFacto
     end = Master(ranks, schedule, make_job, events, report_interval).run();
   else
     Worker(ranks, make_job, report_interval).run();
-  // Workers that finish early wait here: a message of the next round must not reach this round's master, and
+  // Workers that finish early wait here. A message of the next round must not reach this round's master, and
   // waiting in MPI_Finalize would spin.
   ranks.wait_for_all();
   return end;

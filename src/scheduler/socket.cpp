@@ -51,7 +51,7 @@ void Socket::limit_halts(std::chrono::milliseconds longest) const {
 bool Socket::write_all(const void* bytes, std::size_t num_bytes) const {
   const char* next = static_cast<const char*>(bytes);
   while (num_bytes > 0) {
-    // MSG_NOSIGNAL: the death of the other process must not kill this one.
+    // MSG_NOSIGNAL: the end of the other process must not kill this one.
     const ssize_t sent = retried([&] { return ::send(descriptor_, next, num_bytes, MSG_NOSIGNAL); });
     if (sent <= 0) return false;
     next += sent;
@@ -73,12 +73,11 @@ bool Socket::read_all(void* bytes, std::size_t num_bytes) const {
 
 void Socket::send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const {
   const Header header{kind, job, bytes.size()};
-  // The message is sent in one piece, because a sender that is stopped between two pieces would leave half a
-  // message.
+  // The message is sent in one piece. A sender that is stopped between two pieces would leave half a message.
   std::vector<std::byte> message(sizeof header + bytes.size());
   std::memcpy(message.data(), &header, sizeof header);
   std::ranges::copy(bytes, message.begin() + sizeof header);
-  // Half a message would keep the receiver from parsing the next message, so the connection ends.
+  // After half a message the receiver could not parse the next one, so the connection is closed.
   if (!write_all(message.data(), message.size())) ::shutdown(descriptor_, SHUT_RDWR);
 }
 

@@ -12,8 +12,8 @@
 
 namespace clog::scheduler {
 
-/// One end of a connection between two processes of one machine. Messages are complete, or the other process
-/// has died.
+/// One end of a connection between two processes of one machine. A message is received completely, or the
+/// other process has ended.
 class Socket {
  public:
   Socket() = default;
@@ -28,22 +28,21 @@ class Socket {
     std::vector<std::byte> bytes;
   };
   bool is_open() const { return descriptor_.is_open(); }
-  /// From now on, the other process counts as dead if a message in either direction has begun and then halts
-  /// for this long. Such a process may have been stopped.
+  /// Sets a timeout for messages in either direction that have begun. If such a message halts for this long,
+  /// the other process counts as ended. (It may only have been stopped.)
   void limit_halts(std::chrono::milliseconds longest) const;
   void close() { descriptor_ = Descriptor(); }
-  /// A message to a process that has died is lost.
+  /// Sends a message. If the other process has ended, the message is lost.
   void send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const;
   /// Waits for a message, without a timeout unless limit_halts() was called. Returns nullopt if the other
-  /// process has died.
+  /// process has ended.
   std::optional<Message> receive() const;
-  /// Waits for something to receive, which may be the end of the connection. Returns whether there is
-  /// something.
+  /// Waits for a message or for the end of the connection. Returns whether one of them is there.
   bool wait(std::chrono::milliseconds longest) const;
 
   /// Sends one end of another connection to the other process (SCM_RIGHTS).
   void send_socket(const Socket& socket) const;
-  /// Waits for a socket. The result is not open if the other process has died.
+  /// Waits for a socket. The result is not open if the other process has ended.
   Socket receive_socket() const;
 
  private:

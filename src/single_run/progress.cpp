@@ -12,7 +12,7 @@ namespace clog::single_run {
 RunProgress::RunProgress() : status_(std::cerr, console::StatusLine::standard_error()) {}
 
 void RunProgress::tick(const DropletRun& run) {
-  if (status_.is_due()) status_.renew(line(run));
+  if (status_.is_due()) status_.redraw(line(run));
 }
 
 std::string RunProgress::line(const DropletRun& run) const {

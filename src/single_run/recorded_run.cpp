@@ -21,10 +21,10 @@
 namespace clog::single_run {
 namespace {
 
-/// The range around a droplet in a film [sigma].
+/// The distance from a droplet up to which a film shows obstacles [sigma].
 constexpr double surroundings = 5 * units::droplet_diameter;
 
-/// Obstacles, periodic images included, in the surroundings of the polygons. Excludes tips of wedges.
+/// Obstacles, periodic images included, near the polygons. Excludes tips of wedges.
 std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& frames,
                                       const ObstacleArray& array) {
   constexpr double inf = std::numeric_limits<double>::infinity();

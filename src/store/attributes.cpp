@@ -15,8 +15,8 @@
 namespace clog::store {
 namespace {
 
-/// Name of the attribute that lists the checksums: one line, with checksum and name, for the table and for
-/// every other attribute.
+/// Name of the attribute that lists the checksums. It has one line, with checksum and name, for the table and
+/// for every other attribute.
 constexpr const char* list_name = "checksums";
 
 std::string line_of(const NamedCheckSum& one) { return fmt::format("{:08x} {}\n", one.second, one.first); }
@@ -44,7 +44,7 @@ std::optional<std::uint32_t> listed_check_sum(hid_t file, const std::string& nam
   return std::nullopt;
 }
 
-/// An attribute holds less than 64 KiB: the rest of a longer text is in further attributes, `config.2` and so
+/// An attribute holds less than 64 KiB. The rest of a longer text is in further attributes: `config.2` and so
 /// on.
 constexpr std::size_t longest_part = 60'000;
 
@@ -64,7 +64,7 @@ void join_parts(Provenance& provenance) {
     }
 }
 
-/// Drops an attribute with a damaged part: the rest is useless.
+/// Drops an attribute with a damaged part, because its other parts are useless.
 void drop_attribute(const std::string& part, Provenance& provenance) {
   const std::string name = part.substr(0, part.find('.'));
   std::erase_if(provenance,

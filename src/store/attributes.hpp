@@ -20,18 +20,18 @@ using NamedCheckSum = std::pair<std::string, std::uint32_t>;
 /// @param table  the list's entry about the table. @throws LibraryError
 void write_attributes(hid_t file, const NamedCheckSum& table, const Provenance& attributes);
 
-/// An attribute's text; for a damaged text the candidate that matches its checksum.
+/// An attribute's text. If the text is damaged, it is the candidate that matches its checksum.
 std::string text_as_written(hid_t file, const std::string& name,
                             std::span<const std::string_view> candidates);
 /// An attribute's text; empty if it is missing or damaged.
 std::string intact_text(hid_t file, const std::string& name);
 
-/// Appends the intact attributes to `whole`. Appends a sentence to `damage` for each damaged attribute, and
-/// one for the table if it differs.
+/// Appends the intact attributes to `whole`. Appends to `damage` a sentence for each damaged attribute, and
+/// one for the table if its checksum differs.
 void compare_attributes(hid_t file, const NamedCheckSum& table, Provenance& whole,
                         std::vector<std::string>& damage);
 
-/// Names of the attributes that are not in the list of checksums, so another program has added them.
+/// Names of the attributes that are not in the list of checksums. Another program has added them.
 std::vector<std::string> unlisted_attributes(hid_t file);
 
 }  // namespace clog::store

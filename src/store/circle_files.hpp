@@ -17,7 +17,7 @@ inline constexpr const char* circles_name = "obstacles";
 /// @throws LibraryError
 void write_circles(hid_t file, std::span<const CircleFile> circles);
 
-/// Appends intact circles to `whole`, and a sentence for each of the others to `damage`.
+/// Appends intact circles to `whole`. Appends a sentence to `damage` for each damaged file of circles.
 void read_circles(hid_t file, std::vector<CircleFile>& whole, std::vector<std::string>& damage);
 
 }  // namespace clog::store

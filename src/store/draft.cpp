@@ -42,14 +42,14 @@ void remove_stale_drafts(const OutputPath& place, std::string_view mark) {
 Draft::Draft(OutputPath place, std::string_view mark) : place_(std::move(place)), draft_(place_) {
   const mode_t mode = place_.exists()
                           ? 0600
-                          : 0666;  // nobody may read the draft before it has the access rights of its target
+                          : 0666;  // nobody may read the draft before it has the access rights of the target
   for (int number = 1;; ++number) {
     draft_ = draft_place(place_, number);
     remove_if_stale(draft_, mark);
     file_ = draft_.create(mode);
     if (!file_.is_open()) continue;
-    // Another process may have removed the draft as stale before it was locked. On a file system without
-    // locks no process does so.
+    // Another process may have found the draft before it was locked, and removed it as stale. Without locks
+    // in the file system, no process removes drafts.
     const bool is_taken = flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (!is_taken && draft_.holds(file_)) return;
   }

@@ -18,8 +18,8 @@ namespace clog::store {
 void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
 /// An incomplete file beside its target, under an unused name. It is locked until it is closed or unlock() is
-/// called. An unlocked draft with our mark was left behind by a killed process; the next process that makes a
-/// draft removes it. Other files with such a name stay.
+/// called. An unlocked draft with the mark of clogsweep is left over from a killed process; the next process
+/// that makes a draft removes it. Other files with such a name stay.
 class Draft {
  public:
   /// @param mark  see remove_stale_drafts(); written first @throws Error if no file can be made there
@@ -34,15 +34,15 @@ class Draft {
   /// Appends to the draft. @throws Error
   void write(std::span<const std::byte> bytes);
 
-  /// Call this before publishing a draft that others will read: HDF5 locks the files that it reads, and fails
-  /// if somebody else has locked them.
+  /// Call this before publishing a draft that others will read. HDF5 locks the files that it reads, and fails
+  /// if another process has locked them.
   void unlock();
-  /// Saves the draft to disk and renames it to the target, with the mode, owner, group and access list of the
-  /// file with this OutputPath::stamp(), which it replaces. Returns the stamp of the published file, even if
-  /// somebody has replaced the file since. Returns nullopt if a file with another stamp is there; this file
-  /// stays. @throws Error
+  /// Saves the draft to disk and renames it to the target. It replaces the file with this
+  /// OutputPath::stamp(), and gets the mode, owner, group and access list of this file. Returns the stamp of
+  /// the published file, even if somebody has replaced the file since. Returns nullopt if a file with another
+  /// stamp is there; this file stays. @throws Error
   std::optional<std::string> publish(const std::string& stamp);
-  /// The open file, which the caller owns from now on.
+  /// The open file. The caller owns it after this call.
   Descriptor take_descriptor() { return std::move(file_); }
 
  private:

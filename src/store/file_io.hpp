@@ -32,18 +32,18 @@ inline void check(std::error_code reason, FileAction action, const std::string& 
 /// Saves a file to disk. Returns the reason if that failed.
 std::error_code sync(int descriptor);
 
-/// Locks an open file for this process alone, until it is closed. Returns false if another process holds the
-/// lock. @throws Error if the file system has no locks, unless the user allows this by
-/// HDF5_USE_FILE_LOCKING=FALSE, a variable of HDF5
+/// Locks an open file for this process until it is closed. Returns false if another process holds the lock.
+/// @throws Error if the file system has no locks; users can allow this with HDF5_USE_FILE_LOCKING=FALSE, a
+/// variable of HDF5
 bool try_lock(int descriptor, const std::string& path);
 
 /// Size of an open file [bytes]. @throws FileError naming the path, as do the functions below
 std::size_t size_of(int descriptor, const std::string& path);
 
-/// All bytes of a file; fewer than size_of() if somebody truncates it meanwhile.
+/// All bytes of a file. If somebody truncates the file during the call, there are fewer than size_of().
 std::vector<std::byte> read_all(int descriptor, const std::string& path);
 
-/// Reads `size` bytes from `place` on; fewer if the file ends before.
+/// Reads `size` bytes from `place` on; fewer if the file ends earlier.
 std::vector<std::byte> read_at(int descriptor, std::uint64_t place, std::size_t size,
                                const std::string& path);
 

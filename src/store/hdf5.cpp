@@ -21,7 +21,7 @@
 namespace clog::store {
 
 void prepare_library() {
-  // First of all, because even querying the version initialises the library.
+  // This comes first, because even a query of the version initialises the library.
   static const herr_t is_prepared = H5dont_atexit();
   if (is_prepared >= 0) H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the error stack of this thread
 }
@@ -36,7 +36,7 @@ namespace {
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
 /// Builds a file of the earliest format in memory and passes its bytes to use(). The library does not write
-/// the file itself, because it does not always survive a full disk.
+/// the file itself, because it may crash if the disk is full.
 void with_file_image(const std::string& path, const std::function<void(hid_t file)>& fill,
                      const std::function<void(std::span<const std::byte> image)>& use) try {
   prepare_library();
@@ -150,7 +150,7 @@ std::optional<hsize_t> length_of(hid_t dataset) {
 }
 
 bool can_hold(hid_t dataset, hsize_t number, std::size_t bytes_each) {
-  constexpr hsize_t most_compressed = 1100;  // h5repack's zlib does not exceed 1032
+  constexpr hsize_t most_compressed = 1100;  // the zlib of h5repack does not exceed 1032
   return number / most_compressed <= H5Dget_storage_size(dataset) / bytes_each;
 }
 

@@ -45,12 +45,13 @@ using Attribute = Handle<H5Aclose>;
 using PropertyList = Handle<H5Pclose>;
 using Group = Handle<H5Gclose>;
 
-/// Call this before the first use of the library. It turns off two functions of the library. The clean-up at
-/// exit crashes after a failed write. The error stack on the screen is not needed, because we print one line
-/// of our own. The library locks no file, because it has all files in memory.
+/// Call this before the first use of the library. It turns off two functions of the library: the clean-up at
+/// exit, which crashes after a failed write, and the error stack on the screen, because we print one line
+/// instead. The library locks no file, because it has all files in memory.
 void prepare_library();
 
-/// Checks the memory for a file that the library reads or writes in memory: the library may crash without it.
+/// Checks the memory for a file that the library reads or writes in memory, because the library may crash
+/// without this memory.
 /// @param purpose  as in "read sweep.h5"
 /// @param size  of the file [bytes]
 /// @throws Error if there is not enough
@@ -62,8 +63,8 @@ class LibraryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Builds a file of the earliest format in memory, writes it as a draft with a seal at its end and publishes
-/// it: see Draft::publish().
+/// Builds a file of the earliest format in memory, writes it as a draft with a seal at its end, and publishes
+/// it (see Draft::publish()).
 /// @param fill  may throw LibraryError.
 /// @throws Error naming the path
 std::optional<std::string> write_whole(const OutputPath& place, const std::string& stamp,
@@ -76,7 +77,7 @@ std::vector<std::byte> read_file(const std::string& path);
 File open_image(std::vector<std::byte>& image, const std::string& path);
 
 Space space_of(std::initializer_list<hsize_t> shape);
-/// Chunks of this many rows, with checksums by which other programs detect damage.
+/// Chunks of this many rows. They have checksums, with which other programs detect damage.
 PropertyList checked_chunks(hsize_t num_rows);
 /// Creates and fills a dataset; attributes can be added to the result. @throws LibraryError
 /// @param data  nullptr: the data are written later

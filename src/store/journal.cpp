@@ -26,7 +26,7 @@ std::uint32_t check_sum_of_columns() {
   return check_sum(list);
 }
 
-/// The header of the file. A journal with other columns is of another version.
+/// The header of the file. If the columns differ, the journal is of another version.
 struct FileHeader {
   char kind[16] = "clogsweep jrnl2";
   std::uint64_t columns = check_sum_of_columns();
@@ -54,7 +54,8 @@ std::vector<std::byte> record_of(const sweep::RunRow& row, std::span<const std::
   return record;
 }
 
-/// Whether the header is complete. It is missing or incomplete if the journal's writer died at once.
+/// Whether the header is complete. It is missing or incomplete if the journal's writer died at the very
+/// beginning.
 bool has_header(std::span<const std::byte> bytes, const std::string& path) {
   const FileHeader header;
   const std::size_t size = std::min(bytes.size(), sizeof header);
@@ -85,7 +86,7 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
                           check_sum(bytes.subspan(begin, header->size)) == header->check;
     if (!is_whole) {
       if (header) ++num_passed;
-      ++place;  // the search goes on byte by byte, because the size in the header may be damaged
+      ++place;  // the search continues byte by byte, because the size in the header may be damaged
       continue;
     }
     if (place > end) contents.num_unreadable += std::max<std::int64_t>(1, num_passed);
@@ -139,7 +140,8 @@ Journal::Journal(OutputPath place, const OutputPath* table) : place_(std::move(p
 Journal::~Journal() { remove_if_empty(); }
 
 void Journal::open_and_lock(const OutputPath* table) {
-  // is_open() of another process holds the lock for a moment, and the file may be removed in between: retry.
+  // Another process holds the lock briefly in is_open(), and the file may be removed before we lock it. So
+  // this is tried several times.
   constexpr int most_attempts = 10;
   bool is_busy = false;
   std::error_code reason;
@@ -165,7 +167,7 @@ void Journal::open_and_lock(const OutputPath* table) {
 }
 
 /// Prepares the file for writing: writes a missing header, and cuts off an incomplete record at the end. A
-/// file with records is prepared only at the first write, so a sweep that reads the records and refuses them
+/// file with records is prepared only at the first write. So a sweep that reads the records and refuses them
 /// leaves the file unchanged.
 void Journal::begin() {
   if (has_begun_) return;
@@ -196,7 +198,7 @@ void Journal::refuse_replaced() const {
               "when no other sweep is writing to it, the same command resumes the sweep");
 }
 
-bool Journal::make_anew(const OutputPath& table) {
+bool Journal::recreate(const OutputPath& table) {
   close();
   file_ = place_.create(table.exists() ? 0600 : 0666);
   if (!file_.is_open()) return false;
@@ -239,18 +241,18 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
 void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin) {
   check_place();
   next_ = std::make_unique<Draft>(place_, journal_mark);
-  // A draft need not be locked, but this one will be the journal, so it must be locked before the rename.
+  // Drafts need no lock, but this draft will be the journal, so it must be locked before it is renamed.
   if (!try_lock(next_->descriptor(), place_.path())) refuse_replaced();
   next_->write(bytes_of(FileHeader()));
   for (const Entry* entry : entries) next_->write(record_of(entry->row, entry->snapshot));
   num_copied_ = begin;
-  constexpr std::size_t little = 4'000'000;  // replace() copies and synchronises it in negligible time
+  constexpr std::size_t little = 4'000'000;  // replace() needs negligible time for these bytes
   do check(sync(next_->descriptor()), FileAction::write, place_.path());
   while (copy_additions() > little);
 }
 
-/// Returns the number of copied bytes. Excludes a record that is being written: if the disk is full, the
-/// writer undoes it.
+/// Returns the number of copied bytes. Excludes a record that is still being written, because a full disk
+/// would make the writer remove it again.
 std::uint64_t Journal::copy_additions() {
   constexpr std::uint64_t block = 1'000'000;
   const std::uint64_t before = num_copied_;
@@ -268,7 +270,7 @@ std::uint64_t Journal::copy_additions() {
 void Journal::replace() {
   check_place();
   copy_additions();
-  // Whether the folder can be synchronised is reported when the table in this folder is published.
+  // A failure to synchronise the folder is reported when the table in this folder is published.
   if (!next_->publish(place_.stamp())) refuse_replaced();
   file_ = next_->take_descriptor();
   contents_.num_bytes = num_rewritten_bytes_ = next_->size();
@@ -279,8 +281,8 @@ void Journal::replace() {
 
 std::error_code Journal::remove() {
   const std::error_code reason = is_there() ? place_.remove() : std::error_code();
-  place_.sync_folder();  // a power cut may restore the file, which does no harm, because the table contains
-                         // all of its results
+  place_.sync_folder();  // a power cut may restore the file; this is harmless, because the table contains all
+                         // its results
   close();
   return reason;
 }

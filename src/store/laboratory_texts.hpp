@@ -13,9 +13,8 @@ namespace clog::store {
 /// Group of the laboratories.
 inline constexpr const char* laboratories_name = "laboratories";
 
-/// Descriptions of laboratories in a file of runs: the group /laboratories has a text for each. The name of a
-/// text is its checksum, to which rows refer.
-/// @throws LibraryError
+/// Writes descriptions of laboratories to a file of runs: the group /laboratories has a text for each. The
+/// name of a text is its checksum; rows contain this checksum. @throws LibraryError
 void write_laboratories(hid_t file, const std::set<std::string>& check_sums);
 /// Adds the texts to those that this process knows. Appends a sentence to `damage` for each damaged text.
 void read_laboratories(hid_t file, std::vector<std::string>& damage);

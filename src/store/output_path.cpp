@@ -26,8 +26,8 @@ std::string folder_of(const fs::path& path) {
   return folder.empty() ? "." : folder.string();
 }
 
-/// Refuses links as the kernel does with fs.protected_symlinks: in a world-writable sticky folder it follows
-/// only links of this user, or of the folder's owner.
+/// Refuses links as the kernel does with fs.protected_symlinks. In a world-writable sticky folder, the kernel
+/// follows only links of this user and of the folder's owner.
 void refuse_link_of_others(const fs::path& link) {
   struct stat folder {
   }, there{};
@@ -70,7 +70,7 @@ std::string follow_links(const std::string& path) {
   return target.string();
 }
 
-/// Whether the file system does not support this kind of renaming.
+/// Whether the file system does not support this method of renaming.
 bool is_unsupported(std::error_code reason) {
   return reason == std::errc::invalid_argument || reason == std::errc::function_not_supported;
 }
@@ -159,7 +159,7 @@ std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& 
     }
     if (is_unsupported(reason)) return this->stamp() == stamp ? other.rename_to(*this, 0) : occupied;
     if (reason != std::errc::no_such_file_or_directory)
-      return reason;  // if no file was there, somebody has removed it, which is no error
+      return reason;  // if no file was there, somebody has removed it; this is not an error
   }
   const std::error_code reason = other.rename_to(*this, RENAME_NOREPLACE);
   if (!is_unsupported(reason)) return reason;
@@ -169,7 +169,7 @@ std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& 
 void OutputPath::sync_folder() const {
   const Descriptor folder(openat(folder_->descriptor, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   const std::error_code reason = folder.is_open() ? sync(folder) : last_error();
-  // Folders may be writable but not readable; some file systems cannot synchronise them.
+  // Folders may be writable but not readable. Some file systems cannot synchronise them.
   const std::errc harmless = folder.is_open() ? std::errc::invalid_argument : std::errc::permission_denied;
   if (reason && reason != harmless) folder_->sync_fault = reason.message();
 }
@@ -178,13 +178,13 @@ void OutputPath::lend_access_to(int descriptor) const {
   const auto there = status();
   if (!there || !S_ISREG(there->st_mode)) return;
   constexpr uid_t nobody = static_cast<uid_t>(-1);
-  // A process that may not change the owner may still change the group to one of its own.
+  // A process that may not change the owner may still change the group to another group of its user.
   const bool has_group =
       fchown(descriptor, there->st_uid, there->st_gid) == 0 || fchown(descriptor, nobody, there->st_gid) == 0;
   const std::vector<char> list = access_list_of(open(O_RDONLY | O_NONBLOCK));
   constexpr mode_t permissions = 0777;
   mode_t mode = there->st_mode & permissions;
-  // If the file could not get this group, the group that it has gets only the rights of others.
+  // If the group could not be changed, the present group gets only the rights of others.
   if (!has_group) mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);
   fremovexattr(descriptor, access_list);  // the folder may have set one
   fchmod(descriptor, mode);

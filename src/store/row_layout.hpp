@@ -11,14 +11,13 @@
 
 namespace clog::store {
 
-/// Arrangement of a row in a file: columns without gaps. Older files have fewer columns, in
-/// another order.
+/// Arrangement of a row in a file: columns without gaps. Older files have fewer columns, in another order.
 class RowLayout {
  public:
   /// The layout that this version writes.
   static RowLayout present();
-  /// The layout of a stored table; nullopt if a member of the table is not one of our columns, or if the
-  /// table has fewer than `least` columns.
+  /// The layout of a stored table; nullopt if a member of the table is not a column of this program, or if
+  /// the table has fewer than `least` columns.
   static std::optional<RowLayout> of(hid_t stored, std::size_t least);
 
   hid_t type() const { return type_; }

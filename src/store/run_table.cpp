@@ -20,6 +20,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/wording.hpp"
+#include "droplets.hpp"
 #include "hdf5.hpp"
 #include "laboratory_texts.hpp"
 #include "row_layout.hpp"
@@ -36,7 +37,7 @@ constexpr const char* runs_name = "runs";
 constexpr const char* sums_name = "row_checksums";
 constexpr const char* sweep_kind = "clogsweep sweep";
 constexpr hsize_t rows_per_chunk = 64;
-constexpr std::size_t rows_per_block = 1024;  // rows that are copied at once
+constexpr std::size_t rows_per_block = 1024;  // number of rows in a copy
 
 using CheckSums = std::vector<std::uint32_t>;  // checksums of the rows
 
@@ -61,8 +62,11 @@ Space growing_space(std::size_t num_rows) {
   return Space(H5Screate_simple(1, &size, &unlimited));
 }
 
-/// Writes the table. @param laboratories  gets the checksums of all laboratories of the rows
-CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& laboratories) {
+/// Writes the table.
+/// @param laboratories  gets the checksums of all laboratories of the rows
+/// @param families  gets those of the rows
+CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& laboratories,
+                      std::vector<StoredFamily>& families) {
   const RowLayout layout = RowLayout::present();
   const Dataset table = write_dataset(file, runs_name, layout.type(), growing_space(rows.number), nullptr,
                                       checked_chunks(rows_per_chunk));
@@ -78,6 +82,7 @@ CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& labor
       sums.push_back(check_sum(place));
       if (const std::optional<LaboratoryText>& one = row.parameters.laboratory; one && !one->text().empty())
         laboratories.insert(one->check_sum());
+      if (!row.family.empty()) families.push_back({row.task, row.family});
     }
     if (H5Dwrite(table, layout.type(), space_of({number}), select_rows(table, first, number), H5P_DEFAULT,
                  packed.data()) < 0)
@@ -86,11 +91,11 @@ CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& labor
   return sums;
 }
 
-/// Attribute with the number of written columns. It distinguishes a damaged table, which lacks some of these
-/// columns, from a table of an older program.
+/// Attribute with the number of written columns. Both a damaged table and a table of an older program may
+/// lack columns; this number distinguishes them.
 constexpr const char* num_columns_name = "num_columns";
 
-/// The entry for all rows together, in the list of checksums.
+/// The entry in the list of checksums that is for all rows together.
 NamedCheckSum joint_check_sum(const CheckSums& sums) {
   return {fmt::format("{} rows", sums.size()), check_sum(std::as_bytes(std::span(sums)))};
 }
@@ -99,16 +104,19 @@ NamedCheckSum joint_check_sum(const CheckSums& sums) {
 
 void write_runs(hid_t file, const std::string& kind, const Rows& rows, const Provenance& provenance) {
   std::set<std::string> laboratories;
-  const CheckSums sums = write_table(file, rows, laboratories);
+  std::vector<StoredFamily> families;
+  const CheckSums sums = write_table(file, rows, laboratories, families);
   const Dataset list = write_dataset(file, sums_name, H5T_NATIVE_UINT32, growing_space(sums.size()),
                                      sums.data(), checked_chunks(rows_per_chunk));
   write_attribute(list, "meaning", "CRC-32, as of zlib, of the bytes of each row of /runs");
-  Provenance attributes = {{"kind", kind},
-                           {"format_version", format_version},
-                           {num_columns_name, std::to_string(sweep::columns().size())}};
+  Provenance attributes = {
+      {"kind", kind},
+      {"format_version", families.empty() ? format_version : format_version_with_droplets},
+      {num_columns_name, std::to_string(sweep::columns().size())}};
   attributes.insert(attributes.end(), provenance.begin(), provenance.end());
   write_attributes(file, joint_check_sum(sums), attributes);
   write_laboratories(file, laboratories);
+  write_droplets(file, families);
 }
 
 std::string library_version() {
@@ -130,16 +138,17 @@ std::optional<std::string> publish_sweep(const OutputPath& place, const std::str
 
 namespace {
 
-constexpr std::array<std::string_view, 3> readable_versions = {"9", "10", format_version};
+constexpr std::array<std::string_view, 4> readable_versions = {"9", "10", format_version,
+                                                               format_version_with_droplets};
 
-/// @throws Error if the open file has a format version that this program does not read
+/// @throws Error if this program does not read the format version of the open file
 void require_readable_version(hid_t file, const std::string& path) {
   const std::string version = text_as_written(file, "format_version", readable_versions);
   if (std::ranges::find(readable_versions, version) == readable_versions.end())
     throw Error(fmt::format(
         "cannot read {} (format version {}, this program reads {} to {}); use the program that wrote it, or "
         "compute the rows anew",
-        path, version, readable_versions.front(), format_version));
+        path, version, readable_versions.front(), readable_versions.back()));
 }
 
 /// @throws Error if an open file is not one of our sweeps, or has a version that is not read
@@ -172,7 +181,7 @@ std::size_t num_rows_of(hid_t dataset, std::size_t bytes_each) {
   return *number;
 }
 
-/// Turns off the library's check: our checksums identify damaged rows, so the library should return all data.
+/// Turns off the library's check. Our checksums identify damaged rows, so the library should return all data.
 PropertyList without_library_check() {
   PropertyList properties(H5Pcreate(H5P_DATASET_XFER));
   H5Pset_edc_check(properties, H5Z_DISABLE_EDC);
@@ -193,8 +202,8 @@ CheckSums read_check_sums(hid_t file, std::size_t num_rows) {
   return sums;
 }
 
-/// Number of columns that the writer's attribute gives; zero if it is missing, as in files of format 9, or
-/// damaged.
+/// Number of columns according to the writer's attribute. Zero if the attribute is damaged or, as in files of
+/// format 9, missing.
 std::size_t num_columns_written(hid_t file) {
   const std::string text = intact_text(file, num_columns_name);
   std::size_t number = 0;
@@ -246,17 +255,18 @@ bool is_refused(hid_t file, const char* name) {
   return refused;
 }
 
-/// Attributes of the object that are not among the known ones, as in "attribute note of /runs".
+/// Attributes of the object that are not among the known ones. An entry is, for example, "attribute note of
+/// /runs".
 void add_attributes(hid_t object, const std::string& name, const std::set<std::string>& known,
                     std::vector<std::string>& foreign) {
   for (const std::string& attribute : attributes_of(object))
     if (!known.contains(attribute)) foreign.push_back(fmt::format("attribute {} of {}", attribute, name));
 }
 
-/// Objects and attributes that other programs have added. Those in the groups of circles and laboratories are
-/// damage.
+/// Objects and attributes that other programs have added. In the groups of circles and laboratories they
+/// count as damage instead.
 std::vector<std::string> foreign_objects(hid_t file) {
-  const std::set<std::string> known = {runs_name, sums_name, circles_name, laboratories_name};
+  const std::set<std::string> known = {runs_name, sums_name, circles_name, laboratories_name, droplets_name};
   std::vector<std::string> foreign;
   for (const std::string& name : names_in(file))
     if (!known.contains(name)) foreign.push_back('/' + name);
@@ -282,6 +292,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   const CheckSums sums = read_rows(file, found);
   compare_attributes(file, joint_check_sum(sums), found.whole.provenance, found.damage);
   read_circles(file, found.whole.circles, found.damage);
+  read_droplets(file, found.whole.rows, found.damage);
   read_laboratories(file, found.damage);
   if (seal != Seal::whole)
     found.is_refused_by_others = is_refused(file, runs_name) || is_refused(file, sums_name);
@@ -298,8 +309,8 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
                           damage.what()));
 }
 
-/// Returns the seal of the file. Unless the seal is whole, first tries to read the file in a child process;
-/// if that succeeds, this process can read it safely.
+/// Returns the seal of the file. If the seal is not whole, first tries to read the file in a child process.
+/// If that succeeds, this process can read the file safely.
 Seal try_unless_whole(std::vector<std::byte>& image, const std::string& path) {
   const Seal seal = look_at_seal(image);
   if (seal != Seal::whole) try_in_child(image, path, [&] { examine(image, seal, path); });
@@ -343,8 +354,8 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
-/// The command that copies the first of these objects into another file; empty if all are attributes, for
-/// which HDF5 has no such command.
+/// The command that copies the first of these objects into another file. Empty if all are attributes: HDF5
+/// has no command that copies these.
 std::string copying_command(const std::string& path, const std::vector<std::string>& foreign) {
   const auto object = std::ranges::find_if(foreign, [](const auto& name) { return name.starts_with('/'); });
   if (object == foreign.end()) return "";

@@ -7,15 +7,15 @@
 
 namespace clog::store {
 
-/// Whether a file has the bits with which it was written.
+/// Whether the bits of a file are those that were written.
 enum class Seal {
   whole,    ///< yes
   broken,   ///< no
-  missing,  ///< not known: the file is a copy made by another program, or has lost its end
+  missing,  ///< unknown: another program has copied the file, or its end is lost
 };
 
-/// A line at the end of a file, after the part that HDF5 reads: the size and the checksum of all before it.
-/// Programs that only read the file ignore this line; programs that write to the file remove it.
+/// A line at the end of a file, after the part that HDF5 reads. It has the size and the checksum of all bytes
+/// before it. Programs that only read the file ignore this line; programs that write to the file remove it.
 std::string seal_of(std::span<const std::byte> content);
 
 inline constexpr std::size_t seal_size = 64;

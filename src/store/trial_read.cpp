@@ -19,7 +19,7 @@
 namespace clog::store {
 namespace {
 
-/// Limit of CPU time [s], which is far more than a read takes; only an endless loop exceeds it.
+/// Limit of CPU time [s]. It is far above the time of a read; only an endless loop exceeds it.
 rlim_t time_limit(std::size_t num_bytes) {
   constexpr std::size_t least = 10, bytes_per_second = 50'000'000;
   return least + num_bytes / bytes_per_second;
@@ -33,7 +33,7 @@ rlim_t time_limit(std::size_t num_bytes) {
   setrlimit(RLIMIT_CPU, &time);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL, SIGXCPU}) std::signal(signal, SIG_DFL);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  dup2(nowhere, STDERR_FILENO);  // discards the last message of a library that crashes
+  dup2(nowhere, STDERR_FILENO);  // discards the last message of the library if it crashes
   try {
     read();
   } catch (const std::exception&) {
@@ -42,7 +42,7 @@ rlim_t time_limit(std::size_t num_bytes) {
   _exit(0);
 }
 
-/// Returns how the child process died; empty if it survived.
+/// Returns how the child process ended; empty if it did not crash.
 std::string death_of_child(std::size_t num_bytes, const std::string& path,
                            const std::function<void()>& read) {
   const pid_t process = fork();

@@ -11,7 +11,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/sweep/keys.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
@@ -133,9 +135,17 @@ Column parameter_column(const Parameter& parameter) {
           .size = size,
           .parameter = &parameter,
           .shapes_array = parameter.shapes_array,
+          .scope = parameter.scope,
           .get = [&parameter](const RunRow& row) { return value_of(parameter, row); },
           .set = [&parameter](RunRow& row, const Value& value) { set_parameter(parameter, row, value); },
           .set_unknown = [&parameter](RunRow& row) { set_parameter(parameter, row, parameter.before); }};
+}
+
+/// Every group names its model.
+Column model_column(const Parameter& model) {
+  Column column = parameter_column(model);
+  column.usual = [](const RunRow&) { return Value(); };
+  return column;
 }
 
 /// How the array was filled: layout and density in one word.
@@ -181,16 +191,39 @@ Column filling_column() {
 }
 
 Column density_column() {
-  Column column = member(
-      "obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
-      "obstacles per area; in saturated arrays the jamming limit 0.6966/(w_ob+sigma_ob)^2, or NaN if their "
-      "obstacles have different diameters");
+  Column column = member("obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
+                         "number of obstacles per area; for saturated arrays the jamming limit "
+                         "0.6966/(w_ob+sigma_ob)^2, or NaN if the diameters differ");
   column.symbol = parameter("obstacle-density").symbol;
   column.shapes_array = true;
   column.set = [](RunRow& row, const Value& value) {
     take(value, row.obstacle_density);
     if (row.parameters.obstacles.density.per_area) row.parameters.obstacles.density = row.obstacle_density;
   };
+  column.compared = [](const RunRow& row) {
+    const ObstacleParameters& obstacles = row.parameters.obstacles;
+    const bool is_chosen =
+        obstacles.layout == ObstacleLayout::random && (obstacles.density.per_area || obstacles.density.share);
+    return is_chosen ? outside(row.obstacle_density) : Value();
+  };
+  // The default is a number per area. A share of the saturated density is another number for each gap.
+  column.usual = [](const RunRow& row) -> Value {
+    if (!row.parameters.obstacles.density.per_area) return outside(row.obstacle_density);
+    RunParameters run = row.parameters;
+    run.obstacles.density = ObstacleParameters().density;
+    return outside(describe(resolve(run)).obstacle_density);
+  };
+  return column;
+}
+
+/// Allows any word: presets of another version may have other names.
+Column preset_column() {
+  Column column = member(
+      "preset", &RunRow::preset, ColumnRole::parameter, "",
+      "preset that has the run's values of the interface's keys; custom: no preset has them; none: soft disk",
+      16);
+  column.scope = parameter("perimeter-spring").scope;
+  column.usual = [](const RunRow&) -> Value { return find_key("preset").default_text; };
   return column;
 }
 
@@ -201,8 +234,8 @@ std::vector<Column> columns_of_dwells() {
     const std::string name = dwell_column(i);
     const std::string meaning = i == 0
                                     ? "longest time in which the droplet advanced by at most dwell_length; a "
-                                      "dwell cut off by the end of the run counts, the clog does not; NaN: "
-                                      "no dwell was longer than ten times dwell_length/V_t"
+                                      "dwell cut off by the end of the run counts, but the clog does not; "
+                                      "NaN: no dwell was longer than ten times dwell_length/V_t"
                                     : "longest dwell before " + dwell_column(i - 1) + "; NaN: there was none";
     all.push_back(member(
         name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, result, "t0", meaning));
@@ -215,12 +248,12 @@ std::vector<Column> columns_of_dwells() {
   }
   all.push_back(member(
       "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, result, "t0",
-      "the dwell columns contain, for each duration above this value, the first dwell that was longer than "
-      "the duration"));
+      "for every duration above this value, the dwell columns contain the first dwell that exceeded the "
+      "duration"));
   all.push_back(member(
       "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, result, "sigma",
-      "distance at which the last dwell of any duration began, which is the clog or the dwell at the end of "
-      "the run"));
+      "distance at which the last dwell of any duration began; this dwell is the clog or, in other runs, the "
+      "one at the end"));
   all.push_back(member(
       "last_dwell_from", [](auto& row) -> auto& { return row.dwells.last_begin; }, result, "t0",
       "time at which this dwell began"));
@@ -230,14 +263,9 @@ std::vector<Column> columns_of_dwells() {
 std::vector<Column> columns_before_dwells() {
   using enum ColumnRole;
   return {
-      // Allows any word: presets of another version may have other names.
-      member(
-          "preset", &RunRow::preset, parameter, "",
-          "preset with the run's values of the interface's keys; custom: no preset has these values; none: "
-          "soft disk",
-          16),
+      preset_column(),
       member("model_version", &RunRow::model_version, parameter, "",
-             "version of the model; versions give different results for the same parameters"),
+             "version of the model; two versions may give different results for the same parameters"),
       member("status", &RunRow::status, result, "",
              "clogged; broken: a neck of the droplet got thinner than break_up_neck; flowing: the run "
              "reached max_time; passed: the droplet reached the exit or the end of the channel; failed: see "
@@ -250,9 +278,9 @@ std::vector<Column> columns_before_dwells() {
              "empty: unknown",
              16),
       member("stability", &RunRow::stability, result, "",
-             "stable: the clogged droplet would return after any small displacement; unknown: differences of "
-             "forces do not decide whether it would; none: not clogged; empty: unknown (not computed by this "
-             "version)",
+             "stable: the clogged droplet would return after any small displacement; unknown: numerical "
+             "derivatives of the forces cannot decide whether it would; none: not clogged; empty: the "
+             "program's version did not compute this",
              16),
       member("failed_by", &RunRow::failed_by, result, "",
              "crossing: the interface crossed itself; divergence: the integration diverged; crash: the "
@@ -261,16 +289,16 @@ std::vector<Column> columns_before_dwells() {
       member("distance", &RunRow::distance, result, "sigma",
              "displacement of the centre of mass along the flow since release"),
       member("sound_distance", &RunRow::sound_distance, result, "sigma",
-             "distance at the last check that found the droplet whole and not crossing itself, at which "
-             "failed runs are censored; NaN: unknown"),
+             "distance at the last check that found the droplet whole and not crossing itself; failed runs "
+             "are censored there; NaN: unknown"),
       member(
           "lateral_displacement", [](auto& row) -> auto& { return row.lateral; }, result, "sigma",
           "displacement across the flow"),
       member("time", &RunRow::time, result, "t0", "time since release"),
       member(
           "mean_speed", [](auto& row) -> auto& { return row.speed.mean; }, result, "sqrt(sigma g)",
-          "distance divided by time between transient and arrest; NaN if the droplet moved less than half "
-          "a diameter in that time, or if the transient took more than half of the run"),
+          "mean speed from the end of the transient to the arrest; NaN if the droplet moved less than half a "
+          "diameter in that time, or if the transient took more than half of the run"),
       member(
           "mean_speed_error", [](auto& row) -> auto& { return row.speed.error; }, result, "sqrt(sigma g)",
           "standard error of mean_speed from its variation during the run; NaN if the run was too short"),
@@ -284,11 +312,11 @@ std::vector<Column> columns_before_dwells() {
           "steady_distance", [](auto& row) -> auto& { return row.steady.distance; }, result, "sigma",
           fmt::format(
               "displacement along the flow from the time {:g} sigma/V_t to the end of the run, or to the "
-              "last dwell of a clogged run; NaN: the run, or the way to its clog, was shorter",
+              "last dwell of a clogged run; NaN: the run ended, or its last dwell began, before this time",
               SteadyRecord::free_fall)),
       member(
           "steady_time", [](auto& row) -> auto& { return row.steady.time; }, result, "t0",
-          "time in which the droplet went steady_distance"),
+          "time that the droplet took for steady_distance"),
   };
 }
 
@@ -317,12 +345,12 @@ std::vector<Column> columns_after_dwells() {
           "clogged polygon"),
       member(
           "num_wrapped", [](auto& row) -> auto& { return row.hold.geometry.num_wrapped; }, result, "",
-          "number of touched obstacles over which the clogged polygon hangs, 0 for other droplets; -1: "
-          "unknown"),
+          "number of obstacles that the clogged polygon touches and over which it hangs; 0 for other "
+          "droplets; -1: unknown"),
       member(
           "num_gaps", [](auto& row) -> auto& { return row.hold.geometry.num_gaps; }, result, "",
-          "number of gaps in front of the clogged polygon; at least one side of such a gap supports the "
-          "polygon; -1: unknown"),
+          "number of gaps that are in front of the clogged polygon and support it on at least one side; -1: "
+          "unknown"),
       member(
           "num_arcs", [](auto& row) -> auto& { return row.hold.geometry.num_arcs; }, result, "",
           "number of arcs of contact; -1: unknown"),
@@ -332,9 +360,9 @@ std::vector<Column> columns_after_dwells() {
           "over obstacles; NaN for other droplets"),
       member(
           "friction_use", [](auto& row) -> auto& { return row.hold.friction_use; }, result, "",
-          "moment of the wall's friction about a post's centre divided by the largest that friction could "
-          "bear in this direction, the largest over the posts over which a clogged polygon hangs and that "
-          "give at least a tenth of its support; NaN for other droplets"),
+          "moment of friction about a post's centre, divided by the largest moment that friction could exert "
+          "in this direction; the maximum over all posts over which the clogged polygon hangs and that give "
+          "at least a tenth of its support; NaN for other droplets"),
       member(
           "largest_shape_parameter",
           [](auto& row) -> auto& { return row.passage.largest_shape_parameter.value; }, result, "",
@@ -373,12 +401,11 @@ std::vector<Column> columns_after_dwells() {
              "back; -1: unknown"),
       member(
           "release_x", [](auto& row) -> auto& { return row.release[0]; }, result, "sigma",
-          "place of release of the centre of mass in their array, in the coordinates of user-supplied "
-          "circles; "
-          "NaN for other obstacles"),
+          "x of the centre of mass at release, in the coordinates of the user-supplied circles; NaN for "
+          "other obstacles"),
       member(
           "release_y", [](auto& row) -> auto& { return row.release[1]; }, result, "sigma",
-          "place of release across the flow, in the same coordinates; NaN for other obstacles"),
+          "y of the centre of mass at release, in these coordinates; NaN for other obstacles"),
       member("steps", &RunRow::steps, result, "",
              "number of integrated steps; each sub-step counts as one step"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
@@ -404,8 +431,9 @@ std::vector<Column> make_columns() {
   // The columns `model` and `obstacle_filling` come first, because they decide which other parameters a run
   // has.
   for (const Parameter& one : parameter_schema()) {
-    if (one.has_own_column) all.push_back(parameter_column(one));
-    if (one.key == std::string_view("model")) all.push_back(filling_column());
+    const bool is_model = one.key == std::string_view("model");
+    if (one.has_own_column) all.push_back(is_model ? model_column(one) : parameter_column(one));
+    if (is_model) all.push_back(filling_column());
   }
   all.push_back(density_column());
   for (const auto& columns_of : {columns_before_dwells, columns_of_dwells, columns_after_dwells})

@@ -15,12 +15,12 @@ namespace {
 constexpr const char* point_keys_line = "point-keys";
 constexpr const char* point_line = "point";
 constexpr const char* shard_line = "shard";
-constexpr const char* usual_text = "*";  // stands for the text of a key in a point that has none
-// After the config, there is for each file a line with its name and number of circles, then a line for each
-// circle.
+constexpr const char* usual_text = "*";  // replaces an empty text in a point; the key then has its usual text
+// The config is followed by the files of circles. Each file has a line with its name and number of circles,
+// then a line for each circle.
 constexpr const char* file_mark = "#circles ";
 
-/// The text with blanks escaped, because they separate texts.
+/// The text with escaped blanks, because blanks separate texts.
 std::string word_of(const std::string& text) {
   if (text.empty()) return usual_text;
   if (text == usual_text) return "\\x2a";

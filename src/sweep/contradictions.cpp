@@ -12,12 +12,12 @@
 namespace clog::sweep {
 namespace {
 
-/// Whether the key is given with another text than its default.
+/// Whether the key is given with a text other than its default.
 bool is_changed(const Settings& settings, const std::string& key) {
   return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
 }
 
-/// Whether the line of the entrance is a point, for some of the values.
+/// Whether the line of the entrance has no length, for some of the values.
 bool has_point_of_entrance(const Settings& settings) {
   RunParameters run;
   std::set<double> from;
@@ -31,7 +31,7 @@ bool has_point_of_entrance(const Settings& settings) {
   });
 }
 
-/// @throws Refusal, because a key excludes another one that is given as well
+/// @throws Refusal, because two given keys exclude each other
 [[noreturn]] void refuse_one_of(const Settings& settings, const std::string& key, const std::string& other) {
   throw Refusal({.key = key, .excluded = {other}}, settings.text(key),
                 fmt::format("{}={} is given as well", other, settings.text(other)), "leave one of them out");
@@ -54,10 +54,18 @@ void refuse_interface_keys(const Settings& settings) {
   if (settings.text("perimeter-stiffness") != "auto") refuse_one_of(settings, ratio, "perimeter-stiffness");
 }
 
+/// The stiffnesses and the step of a daughter are automatic, so those of the ancestor must be automatic, too.
+void refuse_given_stiffnesses_of_families(const Settings& settings) {
+  if (settings.text("break-up") == name(BreakUp::end)) return;
+  for (const char* key : {"time-step", "wall-stiffness", "area-stiffness", "perimeter-stiffness"})
+    if (is_changed(settings, key)) refuse_one_of(settings, key, "break-up");
+}
+
 }  // namespace
 
 void refuse_contradictions(const Settings& settings) {
   refuse_interface_keys(settings);
+  refuse_given_stiffnesses_of_families(settings);
   if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
     throw Refusal({.key = circles_key}, missing.front(), "the file has not been read", "");
   if (is_changed(settings, "pitch") && is_changed(settings, "obstacle-gap"))

@@ -123,6 +123,11 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
   return all;
 }
 
+const Key& seeds_key() {
+  static const Key& key = *std::ranges::find_if(keys(), &Key::is_ensemble);
+  return key;
+}
+
 const Key& find_key(std::string_view name) { return keys()[place_of_key(name)]; }
 
 std::size_t place_of_key(std::string_view name) {

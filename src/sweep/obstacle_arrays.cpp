@@ -22,7 +22,7 @@
 namespace clog::sweep {
 namespace {
 
-/// Building a smaller array is faster than checking whether another process has it.
+/// Smaller arrays are not shared: building them is faster than asking whether another process has them.
 constexpr double fewest_shared = 1e5;
 constexpr std::chrono::milliseconds pause{5};
 constexpr std::chrono::milliseconds pause_between_looks{500};
@@ -33,8 +33,8 @@ double num_places(const ObstacleParameters& parameters) {
   return parameters.boxes * per_side * per_side;
 }
 
-/// Name under which processes of this executable share the array. Other programs, which may build or arrange
-/// arrays differently, do not find it.
+/// Name under which processes of this executable share the array. Other programs do not find it, because they
+/// may build or arrange arrays differently.
 std::optional<std::string> shared_name(const RunParameters& run) {
   struct stat executable;
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;
@@ -84,8 +84,8 @@ ObstacleArray ObstacleArrays::build(const RunParameters& run) {
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
-  // For every place of an obstacle, building takes 0.5 to 1 microseconds times the number of places within
-  // reach of the largest obstacle.
+  // Building takes a time for every place of an obstacle. This time is 0.5 to 1 microseconds times the number
+  // of places within reach of the largest obstacle.
   constexpr double ten_builds = 10 * 1e-6;
   const double reach =
       (parameters.largest_diameter() + parameters.gap) / (parameters.smallest_diameter() + parameters.gap);
@@ -104,13 +104,14 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     const NameLock lock(*name);
     if (lock.state() == NameLock::State::impossible) return build(run);
     if (lock.state() == NameLock::State::held) {
-      // The lock keeps other processes from building the array. Waiting processes do not search, which would
-      // take the builder's time.
+      // The lock prevents that other processes build the array. Processes that wait for the lock do not
+      // search for the array, because this would slow the builder down.
       if (auto memory = SharedMemory::find(*name)) {
         is_waiting_worthwhile_ = true;
         return array_over(std::move(memory));
       }
-      // The builder has been killed, or its array is not visible: it may run in another container.
+      // The builder has been killed, or its array is not visible, for example because it runs in another
+      // container.
       if (has_waited) is_waiting_worthwhile_ = false;
       ObstacleArray array = build(run);
       auto memory = publish(*name, array);
@@ -124,7 +125,7 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     std::this_thread::sleep_for(pause);
     has_waited = true;
   } while (std::chrono::steady_clock::now() < end);
-  // A builder that takes longer is stuck; building here is then fastest.
+  // A builder that takes longer is stuck. Building the array here is then fastest.
   is_waiting_worthwhile_ = false;
   return build(run);
 }
@@ -132,8 +133,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
   const Scene& scene = scene_of(run);
   if (scene.walls_from == WallsFrom::droplet) return std::make_shared<ObstacleArray>(scene.walls(run));
-  // In a device with side walls, the droplet's reach limits where the droplet may start. This place shifts
-  // the walls, so the reach belongs to the key.
+  // In a device with side walls, the droplet's reach limits the places where the droplet may start. The start
+  // shifts the walls, so the reach is a part of the key.
   std::string key = array_key(run);
   if (scene.walls_from == WallsFrom::circles) key += shortest(model_of(run).reach(run));
   if (key != key_) {

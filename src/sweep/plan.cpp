@@ -39,9 +39,9 @@ auto checked(const Settings& branch, const Settings& lists, const std::string& w
 }
 
 std::vector<std::uint32_t> seeds_of(const Settings& settings) {
-  const Key& key = find_key("seeds");
+  const Key& key = seeds_key();
   std::vector<std::uint32_t> seeds;
-  for (const std::string& text : settings.values("seeds")) {
+  for (const std::string& text : settings.values(key.name)) {
     RunParameters run;
     key.apply(run, text);
     seeds.push_back(run.seed);
@@ -323,7 +323,7 @@ std::vector<std::string> Plan::texts(std::int64_t group) const {
   const Group& one = groups_[static_cast<std::size_t>(group)];
   std::vector<std::string> all;
   for (const std::string* text : texts(one.product, one.place)) all.push_back(*text);
-  all.insert(all.begin() + static_cast<std::ptrdiff_t>(place_of_key("seeds")), "");
+  all.insert(all.begin() + static_cast<std::ptrdiff_t>(place_of_key(seeds_key().name)), "");
   return all;
 }
 

@@ -57,7 +57,7 @@ Shard Shard::from(const std::string& text) {
   try {
     shard = {to_integer(text.substr(0, slash)), to_integer(text.substr(std::min(slash + 1, text.size())))};
   } catch (const Error&) {
-    // refused below
+    // the code below refuses it
   }
   if (shard.of < 1 || shard.number < 1 || shard.number > shard.of)
     throw Error("is not a part like 2/5, the second of five");

@@ -14,7 +14,7 @@ bool contains(const std::vector<std::string>& all, const std::string& one) {
   return std::ranges::find(all, one) != all.end();
 }
 
-/// The refused key if the point does not set it: it is given for all points.
+/// The refused key, if the point does not set it. It is then given for all points.
 /// @param common  settings with the points
 const Key* refused_for_point(const Settings& common, std::size_t point, const Refusal::About& refused) {
   const Points& points = common.points();

@@ -5,12 +5,12 @@
 
 namespace clog::sweep {
 
-/// Why a check refused a value although the user may have meant something possible: another list, or a
-/// decimal instead of a list. Empty if neither.
-/// @param lists  all lists of the sweep, of which a branch has one value if they are words
+/// Explains what the user may have meant by a refused value: another list, or a decimal instead of a list.
+/// Empty if neither is likely.
+/// @param lists  the settings with all lists of the sweep; `branch` has one value of each list of words
 std::string hint_at_list(const Settings& branch, const Settings& lists, const Refusal& refusal);
-/// The refusal of a point. If it is about a key that is given for all points, the remedy is a column of it,
-/// in place of a value that other points have.
+/// The refusal of a point. If the refused key is given for all points, the remedy is a column of this key.
+/// The column replaces the common value.
 /// @param common  settings with the points
 std::string refusal_of_point(const Settings& common, std::size_t point, const Refusal& refusal);
 

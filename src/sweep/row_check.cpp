@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <string_view>
 
@@ -37,11 +38,11 @@ constexpr double longest_patience = 3.2e9;
 /// Largest number of obstacles, gaps or arcs of a droplet.
 constexpr std::int64_t most_contacts = 1'000'000;
 
-/// Largest fraction of the weight that corners may hold: x^2/16 for an edge as long as the droplet on an
-/// obstacle as thin as a needle.
+/// Largest fraction of the weight that corners may hold, x^2/16. It assumes an edge as long as the droplet on
+/// an obstacle as thin as a needle.
 constexpr double most_mesh_hold = 1e6;
 
-/// Droplets that have almost come to rest may be held by slightly more than the friction at rest.
+/// Friction may hold droplets that have almost come to rest with slightly more than its limit.
 constexpr double most_friction_use = 1 + 1e-6;
 
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }
@@ -115,7 +116,7 @@ std::string time_fault(const RunRow& row) {
 }
 
 std::string motion_fault(const RunRow& row) {
-  const double farthest = farthest_way(row);
+  const double farthest = farthest_distance(row);
   if (!is_number_below(std::hypot(row.distance, row.lateral), farthest))
     return fmt::format("{}, {}: no droplet gets farther than {} in {}", named("distance", row.distance),
                        named("lateral_displacement", row.lateral), shortest(farthest),
@@ -125,7 +126,7 @@ std::string motion_fault(const RunRow& row) {
     return named("transient", row.speed.transient) + " is not within the run";
   if (is_known(row.speed.time) && !(row.speed.time > 0 && row.speed.time <= slightly_more))
     return named("travel_time", row.speed.time) + " is not within the run";
-  // An older file lacks the time over which the speed was taken; it was at least one step.
+  // An older file lacks the time over which the speed was averaged. It was at least one step.
   const double travel_time = is_known(row.speed.time) ? row.speed.time : time_step_of(row);
   if (is_known(row.speed.mean) && !is_number_below(row.speed.mean * travel_time, 2 * farthest))
     return named("mean_speed", row.speed.mean) + " is faster than a droplet can be";
@@ -135,7 +136,7 @@ std::string motion_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks the travel from the fixed start of the steady speed on; older files lack it.
+/// Checks the travel from the fixed time at which the steady speed begins. Older files lack it.
 std::string steady_fault(const RunRow& row) {
   const auto [distance, time] = row.steady;
   if (is_known(distance) != is_known(time)) return "steady_distance, steady_time: only one is known";
@@ -143,15 +144,15 @@ std::string steady_fault(const RunRow& row) {
   const double longest = row.time - SteadyRecord::free_fall / row.parameters.drag.terminal_speed;
   if (!(time > 0 && time <= longest + round_off * row.time))
     return named("steady_time", time) + " is not within the run";
-  // The droplet may have been ahead of, or behind, its release when the steady speed began.
-  if (!is_number_below(distance, 2 * farthest_way(row)))
+  // When the steady speed began, the droplet may have been upstream or downstream of its release.
+  if (!is_number_below(distance, 2 * farthest_distance(row)))
     return named("steady_distance", distance) + " is not on the droplet's way";
   return "";
 }
 
 /// Checks that a dwell begins within the path and the time of the run.
 std::string dwell_begin_fault(const RunRow& row, const std::string& column, double distance, double begin) {
-  if (distance < 0 || distance > farthest_way(row))
+  if (distance < 0 || distance > farthest_distance(row))
     return named(column + "_at", distance) + " is not on the droplet's way";
   if (begin < 0 || begin > (1 + round_off) * row.time)
     return named(column + "_from", begin) + " is not within the run";
@@ -175,7 +176,7 @@ std::string dwells_fault(const RunRow& row) {
   const bool are_known = is_known(dwells.known_from);
   if (is_known(dwells.last_distance) != are_known || is_known(dwells.last_begin) != are_known)
     return "dwells_known_from, last_dwell_at, last_dwell_from: only some are known";
-  // A run that is too short for any recorded dwell ends before this time.
+  // A run that ended before this time is too short for any recorded dwell.
   const RunParameters& run = row.parameters;
   const double first = DwellRecord::shortest * run.dwell_length / run.drag.terminal_speed;
   if (are_known &&
@@ -188,7 +189,7 @@ std::string dwells_fault(const RunRow& row) {
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const Dwell& dwell = dwells.longest[i];
     if (!is_known(dwell.length) && !is_known(dwell.distance) && !is_known(dwell.begin)) {
-      next.length = -infinity;  // the file lists fewer dwells, so no further one may follow
+      next.length = -infinity;  // the file lists fewer dwells, so a later one must be empty, too
       continue;
     }
     if (std::string fault = dwell_fault(row, dwell_column(i), dwell, next); !fault.empty()) return fault;
@@ -197,13 +198,13 @@ std::string dwells_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks what readers use of a failed run, too.
+/// Checks the values that readers use even of a failed run.
 std::string soundness_fault(const RunRow& row) {
   if (row.failed_by && (*row.failed_by != FailedBy::none) != (row.status == RunStatus::failed))
     return named("failed_by", name(*row.failed_by)) + ", but " + named("status", name(row.status));
-  if (is_known(row.sound_distance) && !is_number_below(row.sound_distance, farthest_way(row)))
+  if (is_known(row.sound_distance) && !is_number_below(row.sound_distance, farthest_distance(row)))
     return named("sound_distance", row.sound_distance) + " is not on the droplet's way";
-  if (row.status == RunStatus::failed && !is_number_below(*observed_distance(row), farthest_way(row)))
+  if (row.status == RunStatus::failed && !is_number_below(*observed_distance(row), farthest_distance(row)))
     return named("distance", row.distance) + " is not on the droplet's way";
   if (row.healed_crossings < RunRow::not_counted) return "a negative number of healed crossings";
   return "";
@@ -226,7 +227,7 @@ std::string contacts_fault(const RunRow& row) {
     return fmt::format("{}, but contacts={}", named("first_contact_at", row.contacts.first_distance),
                        contacts);
   if (is_known(row.contacts.first_distance) &&
-      !is_number_below(row.contacts.first_distance, farthest_way(row)))
+      !is_number_below(row.contacts.first_distance, farthest_distance(row)))
     return named("first_contact_at", row.contacts.first_distance) + " is not on the droplet's way";
   return "";
 }
@@ -267,11 +268,11 @@ std::string clog_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks the results that only a channel or a wall gives.
+/// Checks the results that exist only in a channel or on a wall.
 std::string passage_fault(const RunRow& row) {
   const Finding finding = scene_of(row.parameters).finding;
   const double fastest = std::sqrt(diverged_energy_ratio);
-  const double way = std::abs(row.parameters.channel.start) + farthest_way(row);
+  const double way = std::abs(row.parameters.channel.start) + farthest_distance(row);
   struct Place {
     const char* column;
     double value;
@@ -287,8 +288,8 @@ std::string passage_fault(const RunRow& row) {
         Place{"largest_relative_speed_at", row.passage.largest_speed.place, passage, -way, way},
         Place{"smallest_relative_speed", row.passage.smallest_speed.value, passage, -fastest, fastest},
         Place{"smallest_relative_speed_at", row.passage.smallest_speed.place, passage, -way, way},
-        Place{"sag", row.sag.centre, Finding::sag, -units::droplet_diameter, farthest_way(row)},
-        Place{"top_sag", row.sag.top, Finding::sag, -units::droplet_diameter, farthest_way(row)}}) {
+        Place{"sag", row.sag.centre, Finding::sag, -units::droplet_diameter, farthest_distance(row)},
+        Place{"top_sag", row.sag.top, Finding::sag, -units::droplet_diameter, farthest_distance(row)}}) {
     if (!is_known(place.value)) continue;
     if (finding != place.finding)
       return named(place.column, place.value) + ", but there is no " +
@@ -302,7 +303,8 @@ std::string passage_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks that a broken droplet has a neck thinner than break-up-neck, and that no other droplet has one.
+/// Checks that a broken droplet has a neck thinner than break-up-neck. No other droplet may have such a neck,
+/// except the ancestor of a family that is still in progress.
 std::string neck_fault(const RunRow& row) {
   const double width = row.neck.width, least = row.parameters.dp.break_up_neck;
   if (is_known(width) != is_known(row.neck.distance))
@@ -310,21 +312,50 @@ std::string neck_fault(const RunRow& row) {
   if (row.status == RunStatus::broken && !(width < least))
     return "broken, but " + named("thinnest_neck", width) + " is not below " + named("break_up_neck", least);
   if (!is_known(width)) return "";
-  if (row.status != RunStatus::broken && width < least)
+  const bool may_have_daughters = row.parameters.dp.break_up == BreakUp::daughters && !is_final(row);
+  if (row.status != RunStatus::broken && width < least && !may_have_daughters)
     return named("thinnest_neck", width) + " is below " + named("break_up_neck", least) +
            ", but it has not broken";
   if (!(width > 0 && width < burst_perimeter) || least == 0)
     return named("thinnest_neck", width) + " is that of no droplet in which necks are looked for";
-  if (!is_number_below(row.neck.distance, farthest_way(row)))
+  if (!is_number_below(row.neck.distance, farthest_distance(row)))
     return named("thinnest_neck_at", row.neck.distance) + " is not on the droplet's way";
   return "";
 }
 
-/// Checks the place of release, which is known only among user-supplied circles: it is in the array.
+/// Checks that the members of a family are an ancestor and the daughters of all its break-ups.
+std::string family_fault(const RunRow& row) {
+  const bool has_family = row.parameters.dp.break_up == BreakUp::daughters && is_final(row);
+  if (has_family != !row.family.empty())
+    return has_family ? "its droplets are missing" : "it has droplets, but no family";
+  if (!has_family) return "";
+  std::map<std::string, const Member*> members;
+  for (const Member& member : row.family)
+    if (!members.emplace(member.path, &member).second) return "its droplet " + member.path + " occurs twice";
+  double area = 0;  // of the droplets that have not broken up, relative to the ancestor's
+  for (const Member& member : row.family) {
+    const std::string who = "its droplet " + (member.path.empty() ? "(ancestor)" : member.path);
+    if (!(member.diameter > 0 && member.diameter <= 1) || !(member.end.time >= member.birth.time))
+      return who + " is that of no family";
+    const bool has_mother =
+        member.path.empty() || members.contains(member.path.substr(0, member.path.size() - 1));
+    const bool has_broken = member.status == MemberEnd::broken;
+    if (!has_mother || has_broken != members.contains(member.path + '0') ||
+        has_broken != members.contains(member.path + '1'))
+      return who + " is not connected to the others";
+    if (!has_broken) area += member.diameter * member.diameter;
+  }
+  return std::abs(area - 1) < round_off
+             ? ""
+             : named("area of its droplets", area) + " is not that of the ancestor";
+}
+
+/// Checks the place of release, which is known only among user-supplied circles: it must be in the array.
 ///
-/// In rows of models before the twelfth, droplets released a little across the border are a little outside.
-/// Those that started outside the first period of the shifted array (see the scene of user-supplied circles)
-/// have a wrong place and a wrong way to the exit: their place is half a period or more outside.
+/// In rows of models before the twelfth, droplets that were released a little across the border have a place
+/// a little outside. Some droplets started outside the first period of the shifted array (see the scene of
+/// user-supplied circles). Their stored place is wrong, half a period or more outside; so is their distance
+/// to the exit.
 std::string release_fault(const RunRow& row) {
   if (!is_known(row.release[0]) && !is_known(row.release[1])) return "";
   const ObstacleParameters& obstacles = row.parameters.obstacles;
@@ -346,22 +377,23 @@ std::string release_fault(const RunRow& row) {
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) {
     if (row.message.empty()) return "failed without a reason";
-    if (!observed_distance(row)) return "";  // nothing else is used, nor needs to make sense
+    if (!observed_distance(row)) return "";  // nothing else in this row is used, so nothing else is checked
     for (const auto check : {duration_fault, soundness_fault, dwells_fault, contacts_fault})
       if (std::string fault = check(row); !fault.empty()) return fault;
     return "";
   }
-  for (const auto check : {time_fault, motion_fault, steady_fault, soundness_fault, dwells_fault,
-                           contacts_fault, shape_fault, clog_fault, passage_fault, neck_fault, release_fault})
+  for (const auto check :
+       {time_fault, motion_fault, steady_fault, soundness_fault, dwells_fault, contacts_fault, shape_fault,
+        clog_fault, passage_fault, neck_fault, family_fault, release_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }
 
 }  // namespace
 
-double farthest_way(const RunRow& row) {
-  // The energy at the release excludes springs along the interface, which have no energy; the margin covers
-  // their work.
+double farthest_distance(const RunRow& row) {
+  // The energy at the release excludes springs along the interface, because they have no energy. The margin
+  // covers the work of these springs.
   constexpr double margin = 1.1;
   const double weight = units::droplet_mass * units::gravity;
   const RunParameters& run = row.parameters;

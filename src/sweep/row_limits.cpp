@@ -23,7 +23,7 @@
 namespace clog::sweep {
 namespace {
 
-// These limits are those of docs/explanation/soundness.md.
+// These limits are those of docs/explanation/trust.md.
 constexpr double largest_tension = 10;
 constexpr int fewest_vertices = 64;
 constexpr int most_vertices = 1024;
@@ -65,8 +65,8 @@ std::string untested_angle(const DpParameters& dp) {
                      shortest(smallest_receding_angle));
 }
 
-/// Very thin obstacles slip through the interface, and the droplet encloses them, at its release or later.
-/// This was observed with obstacles whose diameter was at most the length of an edge. It is more frequent
+/// Very thin obstacles slip through the interface. The droplet then encloses them, at its release or later.
+/// This was observed with obstacles that were not thicker than the length of an edge. It is more frequent
 /// among more obstacles.
 std::string untested_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;  // diameter in units of the edge length, with a margin
@@ -105,7 +105,7 @@ std::string untested_parameters(const Plan& plan) {
     all.resize(most_named);
     all.push_back(others);
   }
-  return "outside the range tested for soundness (handbook, Which droplets are sound): " + joined(all);
+  return "outside the range tested for soundness (handbook, How far to trust it): " + joined(all);
 }
 
 double repetition_length(const RunRow& row) {
@@ -118,8 +118,9 @@ bool has_met_repetition(const RunRow& row) { return row.distance > repetition_le
 
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
-  double farthest = 0, shortest_length = 0, most_boxes = 0;  // numbers of the set that needs most boxes
-  bool is_of_user = false;  // whether the set's circles are user-supplied, so that boxes do not multiply them
+  double farthest = 0, shortest_length = 0,
+         most_boxes = 0;    // numbers of the set that needs most boxes
+  bool is_of_user = false;  // whether the set's circles are user-supplied; boxes do not multiply such circles
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.group(group));
     const RunParameters& run = row.parameters;
@@ -171,8 +172,8 @@ std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), joined(named), shortest(period));
 }
 
-/// Warns if the circles cover only a small part of the device: its lengths were probably given in other units
-/// than the circles.
+/// Warns if the circles cover only a small part of the device. Its lengths were then probably given in other
+/// units than the circles.
 std::string small_part(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
   constexpr double small = 0.2;
   const auto [left, right] = std::ranges::minmax(circles, {}, &Obstacle::x);
@@ -185,8 +186,8 @@ std::string small_part(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), left.x, right.x, lowest.y, highest.y, along, obstacles.box);
 }
 
-/// One line for each file of circles without diameters, unless obstacle-diameter was chosen: the default
-/// diameter is easily overlooked.
+/// One line for each file of circles without diameters, unless obstacle-diameter was chosen. Users easily
+/// overlook the default diameter.
 std::vector<std::string> missing_diameters(const Plan& plan) {
   std::map<std::string, std::string> lines;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {

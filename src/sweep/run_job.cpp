@@ -19,7 +19,7 @@ constexpr int checks_per_look_at_the_clock = 8;
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Fills in the results of an incomplete run.
-void record_interrupted(const DropletRun& run, RunRow& row) {
+void record_interrupted(const FamilyRun& run, RunRow& row) {
   RunResult result = run.result();
   result.status = RunStatus::interrupted;
   record(result, row);
@@ -34,12 +34,12 @@ RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> 
       arrays_(std::move(arrays)),
       row_(begun_row(run_parameters_, task)) {}
 
-/// Restores the run from the snapshot, if a run with these parameters can have written it. Otherwise, for
-/// instance if another version has written the snapshot, the run restarts, with the same result.
-DropletRun RunJob::start() {
+/// Restores the run from the snapshot, if a run with these parameters can have written it. Otherwise the run
+/// restarts, with the same result. This happens, for instance, if another version has written the snapshot.
+FamilyRun RunJob::start() {
   const std::shared_ptr<const ObstacleArray> obstacles = arrays_->get(run_parameters_);
   if (!snapshot_.empty()) try {
-      DropletRun resumed = DropletRun::resume(run_parameters_, obstacles, snapshot_);
+      FamilyRun resumed = FamilyRun::resume(run_parameters_, obstacles, snapshot_);
       RunRow row = row_;
       record_interrupted(resumed, row);
       why_restarted_ = fault_of(row);
@@ -54,7 +54,7 @@ bool RunJob::advance() {
   const Clock::time_point begin = Clock::now();
   const double processor_begin = processor_seconds();
   try {
-    if (!run_) run_ = std::make_unique<DropletRun>(start());
+    if (!run_) run_ = std::make_unique<FamilyRun>(start());
     while (!over_ && Clock::now() - begin < slice) over_ = run_->advance(checks_per_look_at_the_clock);
   } catch (const std::exception& error) {
     over_ = true;
@@ -66,7 +66,7 @@ bool RunJob::advance() {
     record(failure, row_);
     run_.reset();
   }
-  // Clocks of simulated time, and of some virtual machines, may step back.
+  // Clocks of simulated time, and of some virtual machines, may jump back.
   wall_seconds_ += std::max(0.0, std::chrono::duration<double>(Clock::now() - begin).count());
   processor_seconds_ += std::max(0.0, processor_seconds() - processor_begin);
   return over_;
@@ -75,6 +75,7 @@ bool RunJob::advance() {
 RunRow RunJob::row() const {
   RunRow row = row_;
   if (run_) record(run_->result(), row);
+  if (run_ && over_) row.family = run_->members();
   if (!over_) row.status = RunStatus::interrupted;
   if (row.status != RunStatus::failed) row.message = why_restarted_;
   row.wall_seconds = wall_seconds_;

@@ -114,8 +114,8 @@ const Settings::Entries& Settings::entries() const {
   return all_;
 }
 
-/// The given texts, those that follow from them for other keys, and the defaults. User-supplied circles and
-/// keys of a channel set the layout. The preset sets its keys. If nothing is random, there is one seed.
+/// The given texts, the texts of other keys that follow from these, and the defaults. User-supplied circles
+/// and keys of a channel set the layout. The preset sets its keys. If nothing is random, there is one seed.
 Settings::Entries Settings::resolved() const {
   static const Entries defaults = [] {
     Entries entries;
@@ -136,6 +136,10 @@ Settings::Entries Settings::resolved() const {
       all[place_of_key(key)] = std::make_shared<const Entry>(Entry{text, values_of(find_key(key), text)});
   };
   for (const auto& [key, text] : preset_texts(now("preset"))) follow(key, text);
+  // The preset's ratio has no meaning for other springs, or beside a given stiffness.
+  const std::size_t ratio = place_of_key("perimeter-stiffness-ratio");
+  if (!given_[ratio] && (now("perimeter-spring") != "rest" || now("perimeter-stiffness") != "auto"))
+    all[ratio] = defaults[ratio];
   const bool has_circles = now(circles_key) != "none";
   if (has_circles)
     follow(layout_key, "file");
@@ -198,8 +202,8 @@ std::map<std::string, std::vector<std::string>> Settings::all_values() const {
   return all;
 }
 
-/// Keys that nobody has given and whose texts differ between branches: a config that gave them one text would
-/// contradict the branches.
+/// Keys that are not given and that have different texts in different branches. If a config gave such a key
+/// one text, this text would contradict the branches.
 std::set<std::string> Settings::keys_that_follow() const {
   std::set<std::string> following;
   visit_branches([&](const Settings& branch, std::int64_t) {
@@ -208,7 +212,8 @@ std::set<std::string> Settings::keys_that_follow() const {
       if (!branch.given_[i] && !given_[i] && now[i] != entries()[i] && now[i]->text != entries()[i]->text)
         following.insert(keys()[i].name);
   });
-  if (following.contains(layout_key))  // the keys of a channel would set the layout
+  // Channel keys in a stored config would set obstacle-layout, which has to follow from each branch.
+  if (following.contains(layout_key))
     for (const Key& key : keys())
       if (is_of_channel(key) && !is_given(key.name)) following.insert(key.name);
   return following;

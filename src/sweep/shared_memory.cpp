@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
 
-/// An array without seals is incomplete: the process that builds it has not finished.
+/// Whether an array is complete, and belongs to this user. Without seals it is incomplete: the process that
+/// builds it has not finished.
 bool is_complete_and_own(int descriptor) {
   struct stat status;
   const int found = fcntl(descriptor, F_GET_SEALS);
@@ -44,8 +45,8 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// Calls visit() for files that processes of this user have open, until it returns true. Finds these files in
-/// /proc.
+/// Calls visit() for files that processes of this user have open, until visit() returns true. Finds these
+/// files in /proc.
 /// @param link  target of the links in /proc that lead to such a file
 void visit_open_files(const fs::path& link, const std::function<bool(const fs::path&)>& visit) {
   // An unreadable process belongs to another user, or has just ended.
@@ -64,7 +65,7 @@ void visit_open_files(const fs::path& link, const std::function<bool(const fs::p
   }
 }
 
-/// The inode of the socket bound to an abstract address; empty if there is none, or it is unknown.
+/// The inode of the socket bound to an abstract address; empty if there is none, or if it is unknown.
 std::string inode_of(const std::string& address) {
   std::ifstream sockets("/proc/net/unix");
   for (std::string line; std::getline(sockets, line);) {
@@ -115,7 +116,7 @@ NameLock::NameLock(const std::string& name)
     : address_(fmt::format("clogsweep-{}-{}", geteuid(), std::hash<std::string>{}(name))),
       socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (!socket_.is_open()) return;
-  // An abstract address, which exists on this machine as long as the socket is open. Nobody ever connects to
+  // An abstract address. It exists on this machine as long as the socket is open. No process ever connects to
   // it.
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -132,7 +133,7 @@ bool NameLock::is_taken_by_another_user() const {
   if (inode.empty()) return false;
   bool is_own = false;
   visit_open_files("socket:[" + inode + "]", [&](const fs::path&) { return is_own = true; });
-  return !is_own && inode_of(address_) == inode;  // otherwise its holder has just ended
+  return !is_own && inode_of(address_) == inode;  // if the inode has changed, the holder has just ended
 }
 
 }  // namespace clog::sweep

@@ -11,8 +11,8 @@
 namespace clog::sweep {
 
 /// Memory that processes of one user on one machine share, found by its name. It is a memfd, which is sealed
-/// when complete, and which other processes find in /proc. So no file is made, and the memory is freed when
-/// the last process that holds it ends, however it ends.
+/// when it is complete. Other processes find it in /proc. So no file is made, and the memory is freed when
+/// the last process that holds it ends for any reason.
 class SharedMemory {
  public:
   /// Memory that this or another process holds under the name; nullptr if there is none, or if it is not
@@ -48,7 +48,7 @@ class NameLock {
   explicit NameLock(const std::string& name);
 
   State state() const { return state_; }
-  /// Whether a process of another user holds the lock. Any process can take the address of a lock, and the
+  /// Whether a process of another user holds the lock. Any process can take the address of a lock; the
   /// processes that need the lock would then wait in vain. This call is slow, because it inspects all
   /// processes of this user.
   bool is_taken_by_another_user() const;

@@ -23,10 +23,10 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// Whether n values from a to b are meant, lin(a,b,n) or log(a,b,n).
+/// Whether the item is n values from a to b, written lin(a,b,n) or log(a,b,n).
 bool is_spaced(std::string_view item) { return item.starts_with("lin(") || item.starts_with("log("); }
 
-/// The arguments of lin(a,b,n) or log(a,b,n), whether or not a parenthesis closes them.
+/// The arguments of lin(a,b,n) or log(a,b,n), with or without a closing parenthesis.
 std::vector<std::string_view> arguments_of(std::string_view item) {
   return split_list(item.substr(4, item.size() - (item.ends_with(')') ? 5 : 4)));
 }
@@ -56,8 +56,8 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
     double value =
         logarithmic ? first * portable::pow(last / first, fraction) : std::lerp(first, last, fraction);
     if (i == count - 1 && count > 1) value = last;
-    // Twelve digits are enough for the values that a person would write, and avoid 0.30000000000000004 in the
-    // file.
+    // Twelve digits are enough for the values that a user would write. With more digits the file would
+    // contain 0.30000000000000004.
     if (i > 0 && i < count - 1) {
       char digits[32];
       const char* const end =
@@ -89,7 +89,7 @@ std::vector<std::string> expand_range(std::string_view item, std::size_t dots) {
   return values;
 }
 
-/// Refuses other ways to write several integers, or one, with the way that is accepted.
+/// Refuses other notations for one or several integers. The message names the accepted notation.
 void refuse_other_notations(std::string_view item) {
   constexpr std::string_view digits = "0123456789";
   constexpr auto none = std::string_view::npos;
@@ -147,7 +147,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   return {shortest(to_number(item))};
 }
 
-/// @param rest  what follows the number at the beginning of the text
+/// @param rest  the text after the number at its beginning
 [[noreturn]] void refuse_number(std::string_view text, std::string_view rest, const std::string& why) {
   constexpr std::string_view no_unit = ".+-*/0123456789:;,()=";
   rest = trimmed(rest);
@@ -233,7 +233,7 @@ std::string with_decimal_point(std::string_view text) {
 
 double to_number(std::string_view text) {
   double value = 0;
-  const bool has_plus = text.starts_with('+') && !text.starts_with("+-");  // which from_chars does not know
+  const bool has_plus = text.starts_with('+') && !text.starts_with("+-");  // from_chars refuses it
   const char* begin = text.data() + (has_plus ? 1 : 0);
   const char* const text_end = text.data() + text.size();
   const auto [end, error] = std::from_chars(begin, text_end, value);

@@ -1,5 +1,6 @@
 // This file never changes. tests/benchmarks/build.sh divides compile times by the time for this file, so that
-// different machines can be compared. The file uses the libraries whose headers take longest to compile.
+// different machines can be compared. The file uses the libraries with the headers that take longest to
+// compile.
 
 #include <Eigen/Dense>
 #include <boost/program_options.hpp>

@@ -1,14 +1,14 @@
-/// Measures how busy the master (rank 0) is with a thousand workers whose tasks take a second each. The work
-/// of the master depends only on the messages. The master receives a thousand rows per second, and answers
-/// each row with a new task. Here a few workers send as many rows, because their tasks only sleep, and for
-/// less than a second. Everything else is as in clogsweep: the scheduler, MPI, and the table of runs on the
-/// disk.
+/// Measures how busy the master (rank 0) is with a thousand workers that have tasks of a second each. The
+/// work of the master depends only on the messages. The master receives a thousand rows per second, and
+/// answers each row with a new task. Here a few workers send the same number of rows, because their tasks are
+/// shorter and only sleep. Everything else is as in clogsweep: the scheduler, MPI, and the table of runs on
+/// the disk.
 ///   tests/mpirun.sh 5 bench_master [tasks per second] [seconds]
 /// With 0 tasks per second every worker sleeps in one long task. This case measures the cost of waiting.
 ///   bench_master rows 1000000
-/// Simulates a sweep of soft disks. Measures the memory per row, the longest time for which the master does
-/// not answer because it is busy with the table and its journal, and the times to stop and to restart the
-/// sweep.
+/// Simulates a sweep of soft disks. Measures the memory per row, and the times to stop and to restart the
+/// sweep. Also measures the longest time for which the master does not answer because it is busy with the
+/// table and its journal.
 
 #include <sys/resource.h>
 #include <unistd.h>

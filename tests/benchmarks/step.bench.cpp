@@ -139,8 +139,8 @@ BENCHMARK(elastic_polygon)
     ->Arg(30)
     ->Unit(benchmark::kMillisecond);
 
-/// The run of a droplet to a channel and through it, as in clogrun, with the computation of the work against
-/// the drag.
+/// The run of a droplet to a channel and through it, as in clogrun, including the computation of the work
+/// against the drag.
 void polygon_in_channel(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0.01 * static_cast<double>(state.range(0)));
   run.drag.terminal_speed = 0.032;

@@ -1,7 +1,7 @@
-/// Measures the cost of runs of real sweeps per vertex and step, and from release to verdict. For comparison,
-/// the program measures a bare step on the same core. The bare step consists of the two passes (kick and
-/// drift) of a step without contacts. No real step can be faster. Slices of the run and of the bare step
-/// alternate.
+/// Measures the cost per vertex and step for runs of real sweeps, and the cost from release to verdict. For
+/// comparison, the program measures a bare step on the same core. The bare step consists of the two passes
+/// (kick and drift) of a step without contacts. No real step can be faster. Slices of the run and of the bare
+/// step alternate.
 
 #include <algorithm>
 #include <cmath>
@@ -184,7 +184,7 @@ void print(const char* name, const std::vector<Measured>& rounds) {
 
 }  // namespace
 
-/// bench_sweep [ROUNDS [WORD]]: WORD selects the tasks whose names contain it.
+/// bench_sweep [ROUNDS [WORD]]: WORD selects the tasks that have it in their names.
 int main(int argc, char** argv) {
   const int num_rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 3;
   const std::string_view word = argc > 2 ? argv[2] : "";

@@ -1,5 +1,5 @@
-"""Compares the speed of two ranks with that of one rank. The two ranks and the one rank compute the same sweep, whose
-runs have equal lengths. Their computations alternate several times.
+"""Compares the speed of two ranks with that of one rank. Both compute the same sweep, in which all runs have equal
+lengths. Their computations alternate several times.
 
     two_ranks.py FOLDER_OF_PROGRAMS
 

@@ -3,9 +3,9 @@
 
     compare.py threshold.h5 certified.h5
 
-Prints a row per group of runs. Prints a line for every run with another verdict, or with a distance that differs by
-more than 1e-3 sigma; the exit code is then 1. A run that the threshold has not decided by max-time counts as flowing.
-Repeat such a run with a larger max-time.
+Prints a row per group of runs. Also prints a line for every run with another verdict, or with a distance that differs
+by more than 1e-3 sigma; the exit code is then 1. If max-time ended the run before the threshold could decide, the run
+counts as flowing. Repeat such a run with a larger max-time.
 """
 
 import sys

@@ -5,7 +5,7 @@ and lambda.
     compare.py --clogfit build/release/bin/clogfit sweep.h5 [sweep.h5 ...]
 
 Two runs count as the same if both clogged within 0.02 sigma of each other, or if neither clogged. Prints a row per
-preset, gap and line tension, with a cell per number of vertices. A cell contains the number of same runs, the median
+preset, gap and line tension, with a cell per number of vertices. A cell contains the number of equal runs, the median
 distance between the two clogs of a seed [sigma], and lambda with its 95 % interval from clogfit [sigma]. The last rows
 contain the sums, and the time that the runs took.
 """

@@ -1,10 +1,10 @@
 /// Tests whether a finer polygon rests where a coarser one clogged.
 ///   build/release/tests/holds_finer sweep.h5 [PART PARTS]
 /// Repeats each run that clogged. Puts a vertex into the middle of each edge of the droplet at rest, removes
-/// the anchors by which walls hold the droplet, and lets the droplet move. Prints a line of CSV for each run.
-/// The line has the droplet's distance after 600 t0, or its certified rest. For comparison, the line also has
-/// the result for the unchanged number of vertices without the anchors, because a droplet may need the
-/// anchors to stay at rest. PART and PARTS divide the runs among processes.
+/// the anchors by which walls hold the droplet, and lets the droplet move. Prints a line of CSV for each run,
+/// with the droplet's distance after 600 t0, or its certified rest. The line also has the result for the
+/// unchanged number of vertices without the anchors, because a droplet may need the anchors to stay at rest.
+/// PART and PARTS divide the runs among processes.
 
 #include <fmt/core.h>
 

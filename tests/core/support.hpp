@@ -66,7 +66,7 @@ inline Eigen::ArrayXd shaken(Eigen::ArrayXd position, double amount, unsigned se
   return position;
 }
 
-inline constexpr double no_drag = 1e200;  // a terminal speed so large that there is no drag
+inline constexpr double no_drag = 1e200;  // with such a large terminal speed there is no drag
 
 /// An ellipse with the droplet's area. Line tension makes it swing.
 inline Eigen::ArrayXd ellipse(int n, double stretch) {
@@ -111,7 +111,8 @@ inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   return result;
 }
 
-/// The number of vertices that walls hold through films: the same walls hold others nearer to their centres.
+/// The number of vertices that walls hold through films. A vertex counts if its wall also holds another
+/// vertex nearer to the wall's centre.
 inline int num_behind_films(const DropletState& state) {
   return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {
     return std::ranges::any_of(state.anchors, [&](const WallAnchor& other) {

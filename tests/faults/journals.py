@@ -10,9 +10,12 @@ import numpy
 from launch import run
 from metadata import JOURNAL, STOPPED, Stopped
 from samples import FILE, REPORTS, VERIFY, check_complete, in_child, results, stored_rows
+from support import FAMILIES, SNAPSHOT_OF_A_DAUGHTER
 
 # Settings of other sweeps. The journals of these sweeps do not belong to this sweep.
 FOREIGN = ["max-time=9000", "vertices=48", "box=25"]
+# Families whose runs take seconds, with snapshots of their daughters
+DAUGHTERS = [*FAMILIES[:-2], "max-time=6000", "seeds=1..2", "--report-seconds=0.1", "--output", FILE]
 FILE_HEADER = 24
 RECORD_HEADER = struct.Struct("<QII")  # the size and CRC-32 of row and snapshot, and a magic word
 SPECIAL = [0.0, -0.0, -1.0, 1e-308, 1e308, -1e308, float("inf"), float("-inf"), float("nan"), 1e9, 1e17]
@@ -46,15 +49,19 @@ def replaced(setting):
 
 class Faults:
     def __init__(self, folder):
-        self.stopped = Stopped(folder)
+        single = Stopped(folder)
+        self.all = {self.foreign: single, self.hostile_row: single, self.hostile_snapshot: single,
+                    self.hostile_snapshot_of_a_daughter: Stopped(folder, DAUGHTERS, SNAPSHOT_OF_A_DAUGHTER)}
         self.others = {setting: Stopped(folder, replaced(setting)) for setting in FOREIGN}
+
+    def try_one(self, case):
+        way = case.chance.choice(list(self.all))
+        self.stopped = self.all[way]
         with h5py.File(self.stopped.folder / FILE) as file:
             self.row = file["runs"].dtype
         self.complete = (self.stopped.folder / FILE).read_bytes()
         self.own = split(self.stopped.files[JOURNAL], self.row.itemsize)
-
-    def try_one(self, case):
-        case.chance.choice([self.foreign, self.hostile_row, self.hostile_snapshot, self.hostile_snapshot])(case)
+        way(case)
 
     def foreign(self, case):
         """Checks that a foreign journal is refused and changes nothing, and that the sweep resumes when this journal
@@ -79,6 +86,9 @@ class Faults:
         value = self.hostile_value(case.chance, self.row[name])
         case.note(f"record {number} of {len(self.own)}: {name} is {value!r}")
         self.check(case, number, (self.edited(row, name, value), snapshot))
+
+    def hostile_snapshot_of_a_daughter(self, case):
+        self.hostile_snapshot(case)
 
     def hostile_snapshot(self, case):
         number = case.chance.choice([number for number, (_, snapshot) in enumerate(self.own) if snapshot])
@@ -124,13 +134,14 @@ class Faults:
         """Runs the sweep's command. If the command refuses the journal, it is run again without the journal. @return
         whether the command refused the journal"""
         before = {path.name: path.read_bytes() for path in case.folder.iterdir()}
-        outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
+        outcome = run(case, "clogsweep", *self.stopped.settings, exit_codes={0, 2})
         if outcome.code != 2:
             return False
         case.expect({path.name: path.read_bytes() for path in case.folder.iterdir()} == before,
                     "clogsweep: refuses a journal, but changes a file")
         (case.folder / JOURNAL).unlink()
-        case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not resume without the journal")
+        case.expect(run(case, "clogsweep", *self.stopped.settings).code == 0,
+                    "clogsweep: does not resume without the journal")
         return True
 
     def edited(self, row, name, value):

@@ -9,12 +9,13 @@ import time
 from launch import command, run
 from processes import Hung, are_gone, descend, kill, send, wait_for
 from samples import FILE, check_complete, finished_rows, stored_rows
-from support import SMALL, TIMING
+from support import FAMILIES, SMALL, TIMING
 
 # A task may be killed many times before it ends. The number of --attempts is so large that these kills do not make the
 # task fail.
-SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000", "seeds=1..2", "--attempts=1000",
-         "--report-seconds=0.1", "--output", FILE]
+MORE = ["--attempts=1000", "--report-seconds=0.1", "--output", FILE]
+SWEEPS = [[*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000", "seeds=1..2", *MORE],
+          [*FAMILIES[:-2], "max-time=1500", "seeds=1..2", *MORE]]
 RANKS = 2
 GENERATIONS = ["mpirun", "a rank", "a helper", "a computing process"]
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGSTOP]
@@ -28,28 +29,32 @@ PATIENCE = 5
 
 class Faults:
     def __init__(self, folder):
-        begin = time.monotonic()
-        subprocess.run(command("clogsweep", *SWEEP, ranks=RANKS), cwd=folder, check=True, stderr=subprocess.DEVNULL)
-        self.duration = time.monotonic() - begin
-        self.rows = stored_rows(folder / FILE)
+        self.undisturbed = []
+        for number, sweep in enumerate(SWEEPS):
+            place = folder / str(number)
+            place.mkdir()
+            begin = time.monotonic()
+            subprocess.run(command("clogsweep", *sweep, ranks=RANKS), cwd=place, check=True, stderr=subprocess.DEVNULL)
+            self.undisturbed.append((sweep, time.monotonic() - begin, stored_rows(place / FILE)))
 
     def try_one(self, case):
+        sweep, duration, rows = case.chance.choice(self.undisturbed)
         finished = {}
         for _ in range(case.chance.randint(1, 4)):
-            self.disturb(case)
+            self.disturb(case, sweep, duration)
             later = finished_rows(case)
             case.expect(all(later.get(task) == row for task, row in finished.items()), "a finished row was lost")
             finished = later
-        outcome = run(case, "clogsweep", *SWEEP, ranks=RANKS)
+        outcome = run(case, "clogsweep", *sweep, ranks=RANKS)
         case.expect(outcome.code == 0, f"clogsweep: does not resume, exit code {outcome.code}")
-        check_complete(case, case.folder / FILE, self.rows, ignored=[*TIMING, "attempt"])
+        check_complete(case, case.folder / FILE, rows, ignored=[*TIMING, "attempt"])
         case.expect(os.listdir(case.folder) == [FILE], "a finished sweep leaves a journal or a draft")
 
-    def disturb(self, case):
+    def disturb(self, case, sweep, duration):
         """Starts or resumes the sweep. Sends signals to one or two of its processes."""
-        process = subprocess.Popen(command("clogsweep", *SWEEP, ranks=RANKS), cwd=case.folder,
+        process = subprocess.Popen(command("clogsweep", *sweep, ranks=RANKS), cwd=case.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-        time.sleep(case.chance.uniform(0, self.duration))
+        time.sleep(case.chance.uniform(0, duration))
         generations = descend(process.pid)
         sent = [self.send_one(case, generations) for _ in range(case.chance.randint(1, 2))]
         generations += descend(process.pid)  # processes that have begun since the first list

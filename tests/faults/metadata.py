@@ -22,11 +22,12 @@ HOURS = [1e-4 * 1.5**n for n in range(16)]
 
 class Stopped:
     """A sweep that was stopped while one of its runs had a snapshot, and the table of the same sweep after its
-    completion."""
+    completion. @param sign  bytes of the snapshot"""
 
-    def __init__(self, folder, settings=STOPPED):
+    def __init__(self, folder, settings=STOPPED, sign=b""):
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=folder))
         self.settings = settings
+        self.sign = sign
         for hours in itertools.cycle(HOURS):
             self.sweep(f"--max-hours={hours}")
             if self.has_snapshot():
@@ -42,7 +43,7 @@ class Stopped:
 
     def has_snapshot(self):
         journal = self.folder / JOURNAL
-        return journal.exists() and journal.stat().st_size > 4096
+        return journal.exists() and journal.stat().st_size > 4096 and self.sign in journal.read_bytes()
 
 
 class Faults:

@@ -11,7 +11,7 @@ from clogsweep.tools.errors import UserError
 
 from launch import command, run
 from processes import CPU_SECONDS
-from support import BLOCKED, QUICK, TIMING
+from support import BLOCKED, FAMILIES, QUICK, TIMING
 
 FILE = "s.h5"
 SEAL = b"\nclogsweep seal"  # marks the end of a file
@@ -19,6 +19,7 @@ SALVAGED = "salvaged.h5"
 SWEEPS = {
     "polygons": [*QUICK, "obstacle-gap=0.4", "line-tension=0.05,0.5,1", "seeds=1..2"],
     "failures": [*BLOCKED, "seeds=63..64"],
+    "families": [*FAMILIES[:-1], "seeds=1..2"],
     "disks": ["model=sp", "wall-stiffness=1", "box=20", "obstacle-density=saturated",
               "max-time=60", "obstacle-gap=0.4,1.2", "seeds=1..2"],
 }
@@ -54,10 +55,15 @@ def in_child(function, *arguments):
 
 
 def stored_rows(path):
-    """The bytes of each column of every task, read by h5py."""
+    """The bytes of each column of every task, and of the droplets of its family, read by h5py."""
     with h5py.File(path, "r") as file:
         rows = file["runs"][()]
-    return {int(row["task"]): {name: row[name].tobytes() for name in rows.dtype.names} for row in rows}
+        droplets = file["droplets"][()] if "droplets" in file else None
+    stored = {int(row["task"]): {name: row[name].tobytes() for name in rows.dtype.names} for row in rows}
+    if droplets is not None:
+        for task, row in stored.items():
+            row["droplets"] = droplets[droplets["task"] == task].tobytes()
+    return stored
 
 
 def stored_texts(path):

@@ -171,8 +171,8 @@ TEST(LeastSquaresLength, HasNoUnit) {
 }
 
 TEST(LeastSquaresLength, IsBiasedWhereTheFitIsNot) {
-  // Runs of the same speed begin one after the other, and are observed halfway through the sweep. Some of the
-  // censored runs have covered little distance, but least squares treats them as runs that never clog.
+  // Runs of the same speed begin one after the other. They are observed halfway through the sweep. Some of
+  // the censored runs have covered little distance, but least squares treats them as runs that never clog.
   std::mt19937_64 engine(4);
   std::exponential_distribution<double> distance(1);
   double of_least_squares = 0, of_likelihood = 0;
@@ -199,7 +199,7 @@ TEST(CloggingLength, RefusesAnImpossibleConfidence) {
 /// same speed, and clog at exponentially distributed distances.
 struct LiveSweep {
   double of_finished = 0;  ///< Clogging length from finished runs alone, divided by the true value.
-  double of_all = 0;       ///< The same from all runs; those in progress are censored.
+  double of_all = 0;       ///< The same ratio from all runs; runs in progress are censored.
 };
 LiveSweep look_at(int num_workers, int num_runs, double share_done, std::mt19937& engine) {
   std::exponential_distribution<double> distance(1);

@@ -93,8 +93,8 @@ TEST(LengthRatio, IsNotKnownWithoutClogs) {
   EXPECT_FALSE(ratio.is_paired);
 }
 
-/// The fraction of sweeps whose interval contains the true ratio, and the fraction of sweeps whose runs were
-/// paired.
+/// The fraction of sweeps with an interval that contains the true ratio, and the fraction of sweeps with
+/// paired runs.
 struct Coverage {
   double covered = 0, paired = 0;
 };

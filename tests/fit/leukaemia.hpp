@@ -7,8 +7,8 @@
 namespace clog::fit {
 
 /// Remission times [weeks] of the two arms of the 6-MP trial (Freireich et al., Blood 21, 699 (1963)), the
-/// common example of survival analysis. Of the 21 treated patients 12 are censored. Of the patients with
-/// placebo none is censored.
+/// common example of survival analysis. Twelve of the 21 treated patients are censored, and none of the
+/// patients with placebo.
 inline const std::vector<Observation> leukaemia_treated = {
     {6, true},   {6, true},   {6, true},   {6, false},  {7, true},   {9, false},  {10, true},
     {10, false}, {11, false}, {13, true},  {16, true},  {17, false}, {19, false}, {20, false},

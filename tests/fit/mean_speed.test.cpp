@@ -49,8 +49,8 @@ TEST(SpeedRatio, HasNoErrorForOneRunAndNoMeanForNone) {
   EXPECT_TRUE(std::isnan(fit_pooled_speed({}).mean));
 }
 
-/// Runs whose times differ by up to a factor of ten. The speed of a short run scatters more than that of a
-/// long run.
+/// Runs with times that differ by up to a factor of ten. The speed of a short run scatters more than that of
+/// a long run.
 std::vector<Travel> scattered_runs(int number, std::mt19937& engine) {
   std::uniform_real_distribution<double> log_time(0, std::log(10));
   std::normal_distribution<double> normal;

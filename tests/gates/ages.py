@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Checks docs/gallery/pictures.csv, which lists every picture of the gallery with its size and the model version of
-its rows. A picture of an earlier model version, or of reduced size, must wait for a sweep of
-docs/gallery/rows/queue.csv, which lists the sweeps that are still to be run; its note is then `waits`. For the other
-pictures of an earlier model version, a later note must show for a part of each picture that the program still gives the
-same rows. The note's CSV file contains these rows."""
+"""Checks docs/gallery/pictures.csv, which lists every picture of the handbook with its size and the model version of
+its rows. A picture of an earlier model version, or of reduced size, must wait for a sweep in
+docs/gallery/rows/queue.csv, the list of the sweeps that are still to be run; its note is then `waits`. For the other
+pictures of an earlier model version, a later note must show that the program still gives the same rows for a part of
+each picture. The note's CSV file contains these rows."""
 
 import csv
 import re
@@ -14,7 +14,8 @@ import known
 GALLERY = known.ROOT / "docs/gallery"
 VERSION = re.search(r"int model_version = (\d+);", (known.ROOT / "include/clog/core/parameters/parameters.hpp").read_text())[1]
 NOTE = re.compile(r"\]\(\.\./notes/(([\d-]{10})-[\w-]+)\.md\)")
-FULL = ("full", "single runs")
+SINGLE = ("single runs", "own sweep")  # No sweep of the queue will change these pictures.
+FULL = ("full", *SINGLE)
 
 
 def lines_of(path):
@@ -35,15 +36,16 @@ def faults():
     queue = {line["sweep"] for line in lines_of(GALLERY / "rows/queue.csv")}
     for picture in pictures:
         name, version, note = picture["picture"], picture["model version"], picture["note"]
-        waits = note == "waits" and (picture["size"] == "single runs" or queue & set(picture["sweeps"].split()))
+        waits = note == "waits" and (picture["size"] in SINGLE or queue & set(picture["sweeps"].split()))
         if picture["size"] not in FULL and not waits:
             yield f"{name} is not of full size, and no sweep of rows/queue.csv will change that; run it, or list it"
         if version != VERSION and not waits and name not in same_now(NOTE.search(note), picture["date"]):
             yield (f"{name} has rows of model version {version}, and no note found the same with {VERSION}; "
                    "draw it anew, or recompute a part")
     listed = {picture["picture"] for picture in pictures}
-    shown = {name for page in GALLERY.glob("*.md") for name in re.findall(r"pictures/(?:figure-)?([\w-]+)\.png", page.read_text())} | {"density"}
-    yield from (f"{name} is missing in pictures.csv, or in the gallery" for name in sorted(shown ^ listed))
+    pages = [known.ROOT / "README.md", *(known.ROOT / "docs").rglob("*.md")]
+    shown = {name for page in pages for name in re.findall(r"pictures/(?:figure-)?([\w-]+)\.png", page.read_text())}
+    yield from (f"{name} is missing in pictures.csv, or on the pages" for name in sorted(shown ^ listed))
     tables = {VERSION, *(picture["model version"] for picture in pictures if picture["note"] == "waits")}
     if not any(f"All rows have model version {version}." in " ".join((GALLERY / "agreement.md").read_text().split()) for version in tables):
         yield f"the table of agreement is of another model version than {VERSION}; make it anew"

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""clang.py warnings|tidy [--changed] [--most N] [FILE...]: prints what clang++ or clang-tidy finds in these sources, or
-in all sources.
+"""clang.py warnings|tidy [--changed] [--most N] [FILE...]: prints the findings of clang++ or clang-tidy in these
+sources, or in all sources.
 
---changed takes sources that changed (known.py says since when), and for each changed header a source that includes it.
-If there are more than N sources, it takes N of them, and others at the next commit. Exit code 1: there is a finding.
-"""
+--changed selects changed sources (known.py prints since when), and for each changed header a source that includes it.
+If there are more than N sources, it selects N of them, and others at the next commit. Exit code 1: there is a
+finding."""
 
 import argparse
 import concurrent.futures
@@ -33,7 +33,7 @@ def configure():
 
 def compile_commands():
     """The arguments that compile each source in git. A source that no target compiles is reported. Examples are an
-    exception, because a test builds them against an installation."""
+    exception, because a test builds them with an installation."""
     sources = set(known.files("*.cpp", ":(exclude)docs/examples"))
     commands = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
@@ -57,8 +57,8 @@ def source_of(header, sources):
 
 
 def chosen(sources, most):
-    """Chooses at most this number of the sources that changed or that include a changed header. Prints the sources that
-    it leaves out."""
+    """Chooses at most this number of the sources that changed or that include a changed header. Prints the excluded
+    sources."""
     answer = known.changed()
     if answer is None:
         print(f"what changed is not known: all {len(sources)} sources are candidates")
@@ -109,15 +109,15 @@ def main():
         sources = chosen(sources, given.most)
 
     ask = {"warnings": compiler_words, "tidy": tidy_words}[given.kind]
-    told, faulty = set(), []
+    printed, faulty = set(), []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for source, code, words in pool.map(lambda name: ask(name, commands[name]), sources):
             if code != 0:
                 faulty.append(source)
             # A finding in a header is printed once, not for every source that includes the header.
             for finding in FINDING.split(words):
-                if finding.strip() and finding not in told:
-                    told.add(finding)
+                if finding.strip() and finding not in printed:
+                    printed.add(finding)
                     print(finding.rstrip(), flush=True)
     if faulty:
         sys.exit(f"there is something to mend in {len(faulty)} of {len(sources)} sources: " + " ".join(faulty))

@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# If nothing else shows what changed, the files of this number of last commits count as changed, because one push may
-# contain so many commits.
+# If nothing else shows what changed, the files of this number of last commits count as changed. One push may contain so
+# many commits.
 LAST_COMMITS = 10
 
 

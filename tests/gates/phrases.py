@@ -54,7 +54,7 @@ def paragraphs(name):
 def main():
     phrases = list(listed())
     pages = [name for name in known.files("*.md") if not name.startswith(DATED)]
-    # tests/gates is left out, because phrases.txt and this script contain the phrases themselves.
+    # tests/gates is excluded, because phrases.txt and this script contain the phrases themselves.
     sources = [name for name in known.files(*SOURCES) if not name.startswith("tests/gates/")]
     faults = 0
     for name in pages + sources:

@@ -26,7 +26,7 @@ PAGE_MARKS, CODE_MARKS = re.compile(r"^\s*(?:[-*>] )?"), re.compile(r"^[\s/*<!#>
 
 
 def lines(name, kind):
-    """Those lines of a file that belong to the kind, with their numbers."""
+    """The lines of a file that belong to the kind, with their numbers."""
     text = (known.ROOT / name).read_text()
     if name.endswith(".md"):
         return [(number, line) for number, line in width.prose(text) if not line.startswith(("#", "!", ":", "---"))]

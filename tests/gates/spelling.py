@@ -2,7 +2,7 @@
 """Checks the spelling of prose with aspell: *.md, comments, docstrings, and messages of programs. The spelling is
 British, with -ise.
 
-Correct words that aspell does not know are in words.txt. Words that look like code are left out. Such words are
+Correct words that aspell does not know are in words.txt. Words that look like code are excluded. Such words are
 `quoted`, are in CamelCase or CAPITALS, or contain digits, underscores, slashes or equals signs.
 """
 
@@ -61,7 +61,7 @@ def of_script(text):
 
 
 def prose(name):
-    """The lines of prose in a file, with their numbers. Messages in tests are left out, because tests quote mistakes of
+    """The lines of prose in a file, with their numbers. Messages in tests are excluded, because tests quote mistakes of
     users."""
     text = (known.ROOT / name).read_text()
     with_messages = not name.startswith("tests/")

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
 """Checks that lines of prose in *.md have at most 120 characters. Tables, code, and words that cannot be broken may be
-longer. Also counts longer lines in `*.py`: their number may only fall, and LONG_PYTHON_LINES follows it."""
+longer. Also counts longer lines in `*.py`. Their number may only fall; after a fall, LONG_PYTHON_LINES must be
+lowered."""
 
 import sys
 
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 744
+LONG_PYTHON_LINES = 736
 
 
 def prose(text):
-    """The lines of prose, with their numbers. Tables, fenced blocks and indented blocks are left out."""
+    """The lines of prose, with their numbers. Tables, fenced blocks and indented blocks are excluded."""
     fenced = indented = False
     before = ""
     for number, line in enumerate(text.splitlines(), 1):

@@ -1,5 +1,5 @@
 """Checks that each layer includes only the layers that its line in docs/developer/architecture.md names. Some libraries
-may be included by one layer only. No header may include fmt.
+may be included by only one layer. No header may include fmt.
 
 The layers inside core have their own lines: core/world, core/polygon/step and so on. The modules of the Python package
 are its folders, and another table of the page lists them. An import inside a function counts, too. Neither layers nor

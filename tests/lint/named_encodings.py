@@ -1,5 +1,5 @@
-"""Checks that the Python package names an encoding wherever it reads or writes text. Otherwise the locale would decide
-about the encoding, and a page that states `charset=utf-8` might contain another encoding.
+"""Checks that the Python package names an encoding wherever it reads or writes text. Otherwise the locale would choose
+the encoding, and a page with `charset=utf-8` might have another encoding.
 
     tests/lint/named_encodings.py ROOT
 """

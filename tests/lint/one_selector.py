@@ -1,6 +1,6 @@
 """Checks that only --instruction-set can determine the bits of a row. So no compiled file of ours may query the
-processor, and none may have indirect functions, because their version depends on the processor at the start of a
-program.
+processor. None may have indirect functions, either, because the processor at the start of a program determines their
+version.
 
     one_selector.py READELF OBJDUMP FILE...     (archives and programs)
 """

@@ -1,5 +1,5 @@
-"""Checks calls of the C library. Layers whose numbers get into rows must not call functions of which the library has
-several versions for different processors. include/clog/core/tools/portable_math.hpp replaces these functions.
+"""Checks calls of the C library. The library has several versions of some functions, for different processors. Layers
+with numbers that get into rows must not call these functions. include/clog/core/tools/portable_math.hpp replaces them.
 
     portable_math.py READELF ARCHIVE...
 """

@@ -1,7 +1,7 @@
 """Checks that the lists of keys and columns in the documentation agree with clogsweep --schema.
 
     tests/lint/schema_tables.py build/release/bin/clogsweep .            # exit code 1: a list is out of date
-    tests/lint/schema_tables.py build/release/bin/clogsweep . --write    # renews the lists
+    tests/lint/schema_tables.py build/release/bin/clogsweep . --write    # updates the lists
 """
 
 import json
@@ -42,7 +42,7 @@ def type_of(column):
 
 def columns(schema):
     """The list of columns. One paragraph names all columns that have the name and the value of a key. Each other column
-    has an entry. Columns whose meanings differ only in numbers share an entry."""
+    has an entry. Columns with meanings that differ only in numbers share an entry."""
     key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
     named, rows = [], {}
     for column in schema["columns"]:
@@ -61,10 +61,10 @@ def columns(schema):
         yield from definition(name, meaning + ("; likewise " if others else "") + ", ".join(others))
 
 
-TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/columns.md", "columns", columns)]
+TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/files.md", "columns", columns)]
 
 
-def renewed(text, name, lines):
+def updated(text, name, lines):
     begin, end = BEGIN.format(name), END.format(name)
     before, _, rest = text.partition(begin)
     _, found, after = rest.partition(end)
@@ -79,10 +79,10 @@ def main(program, root, *options):
     for path, name, lines in TABLES:
         place = pathlib.Path(root) / path
         text = place.read_text()
-        new = renewed(text, name, lines(schema))
+        new = updated(text, name, lines(schema))
         if new == text:
             continue
-        stale.append(f"{path}: its list of {name} is stale; renew it with {sys.argv[0]} {program} {root} --write")
+        stale.append(f"{path}: its list of {name} is stale; update it with {sys.argv[0]} {program} {root} --write")
         if "--write" in options:
             place.write_text(new)
     print("\n".join(stale) or "lists are as the schema")

@@ -2,7 +2,7 @@
 """Tests that a new parameter needs only a member of RunParameters, an entry in core/parameters/schema.cpp, and its
 physics. The patch quiet_checks.patch adds such a parameter.
 
-    tests/newcomer/add_parameter.py            # applies the patch to a copy, builds it, and looks for the parameter
+    tests/newcomer/add_parameter.py            # applies the patch to a copy, builds it, and searches for the parameter
     tests/newcomer/add_parameter.py --check    # only checks that the patch still fits, which takes no time
 
 Building the copy without optimisation takes some minutes. Exit code 1: the parameter is missing somewhere.

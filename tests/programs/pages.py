@@ -13,7 +13,7 @@ BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTA
 TOCTREE = re.compile(r"^```{toctree}\n(?::.*\n)*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # Settings from the page before the tutorials. With `set` a block ends at the first command that fails.
 BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
-HOW_TO = ("other-arrays", "own-obstacles", "lattice", "lateral-displacement", "compare-sweeps", "python",
+HOW_TO = ("own-obstacles", "lattice", "compare-sweeps", "python",
           "contact-angles", "sizes-and-tilts")
 PAGES = ["README.md", *(f"docs/how-to/{name}.md" for name in HOW_TO)]
 

@@ -16,7 +16,7 @@ from support import BIN, ROOT
 
 class Calibrate(test_calibrate.OnATerminal):
     def test_it_finds_what_made_a_passage_close_to_a_clog(self):
-        # A droplet whose line tension is larger by 2 % clogs. Near this line tension Delta_v has narrow minima.
+        # A droplet with a line tension that is 2 % larger clogs. Near this line tension Delta_v has narrow minima.
         line_tension, near_wall_drag = 1.0, 0.07
         keys = ["--orifice=0.7", "vertices=48", "terminal-speed=0.05"]
         self.succeed("clogrun", "channel", "--output", "channel.h5", f"line-tension={line_tension}",

@@ -1,4 +1,4 @@
-"""Tests devices drawn by a user, in runs that take long."""
+"""Tests devices that a user drew. These tests need long runs."""
 
 import unittest
 

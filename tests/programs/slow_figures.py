@@ -1,4 +1,4 @@
-"""Draws all figures of the article from small sweeps."""
+"""Draws all figures of the article (Cheng et al.) from small sweeps."""
 
 import math
 import unittest
@@ -26,13 +26,13 @@ class Figures(test_figures.Drawn):
         # Figure 6c shows every point of all families on both meshes.
         drawn = {(row["curve"].split(",")[0], row["vertices"], row["friction"], row["obstacle_gap"],
                   row["line_tension"], row["clogging_length_lower"]) for row in self.drawn("6c")}
-        told = {(config,
-                 *(str(group[name])
-                   for name in ("vertices", "friction", "obstacle_gap", "line_tension", "clogging_length_lower")))
-                for config in ("clogging-robust", "clogging-friction", "clogging-elastic")
-                for sweep in (config, f"{config}-mesh") for group in self.fit(sweep)}
-        self.assertEqual(len({curve for curve, *_ in told}), 3)
-        self.assertEqual(drawn, told)
+        printed = {(config,
+                    *(str(group[name])
+                      for name in ("vertices", "friction", "obstacle_gap", "line_tension", "clogging_length_lower")))
+                   for config in ("clogging-robust", "clogging-friction", "clogging-elastic")
+                   for sweep in (config, f"{config}-mesh") for group in self.fit(sweep)}
+        self.assertEqual(len({curve for curve, *_ in printed}), 3)
+        self.assertEqual(drawn, printed)
 
         file = self.folder / self.PLACE / "sweeps" / "clogging-friction.h5"
         self.assert_clogs(file, "5", "6a", "6b")
@@ -42,13 +42,13 @@ class Figures(test_figures.Drawn):
         self.figures("map")
         self.assert_picture(f"{self.PLACE}/figure-map")
         points = self.drawn("map")
-        told = [group for sweep in ("map-robust", "map-friction") for group in self.fit(sweep)]
+        printed = [group for sweep in ("map-robust", "map-friction") for group in self.fit(sweep)]
         for name in ("obstacle_gap", "obstacle_filling", "line_tension", "friction", "clogging_length_lower"):
-            self.assertEqual(sorted(point[name] for point in points), sorted(str(group[name]) for group in told))
+            self.assertEqual(sorted(point[name] for point in points), sorted(str(group[name]) for group in printed))
         self.assertEqual({point["obstacle_filling"] for point in points}, {"density", "saturated"})
 
     def test_single_runs_are_drawn_as_they_were_run(self):
-        # The number of runs for the figures of single droplets. Figure A1 needs no runs of its own.
+        # The number of runs for the figures of single droplets. Figure A1 needs no separate runs.
         self.assert_single_runs(["1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "C2", "D"],
                                 1 + 1 + 2 + 6 + 1 + 3 + 14 + 2 + 5, "7b", "3", "B2")
 
@@ -67,8 +67,8 @@ class Figures(test_figures.Drawn):
                 for column in ("largest_shape_parameter", "largest_shape_parameter_at", "smallest_relative_speed",
                                "largest_relative_speed"):
                     self.assertEqual(float(point[column]), row[column])
-        # After this exchange, the stored path does not belong to the sweep's row. So the run is repeated, or refused
-        # with --draw-only.
+        # After this exchange, the stored path is not the path of the sweep's row. So the run is repeated, or with
+        # --draw-only the figure is refused.
         way = self.folder / self.PLACE / "runs" / "vertices-1.h5"
         way.with_name("vertices-0.h5").replace(way)
         self.refuse_analysis("figures", "B1", "--output", ".", "--programs", BIN, *SET, "--draw-only",

@@ -16,7 +16,7 @@ from PIL import Image, ImageDraw
 import pages
 from drawing import Analysis
 from test_device import gdsii
-from support import FEW, ROOT, SMALL
+from support import FAMILIES, FEW, ROOT, SMALL
 
 from clogsweep.commands import agreement, collision, figures, predict
 from clogsweep.paper.plate import CATALOGUE
@@ -71,6 +71,7 @@ class Commands(Analysis):
                            "lattice": ["obstacle-layout=lattice", "pitch=3", "obstacle-diameter=1",
                                        "vertices=64", "box=200", "max-time=600",
                                        "terminal-speed=0.1", "line-tension=1,2", "lattice-angle=15,25", "seeds=1"],
+                           "families": FAMILIES,
                            "wrapped": [*SMALL, "preset=elastic", "friction=0.2", "line-tension=0.05", "obstacle-gap=0.3", "max-time=3000", "seeds=1..2"]}.items():
             self.copy_sweep(f"{name}.h5", *keys)
         self.write("fit.json", self.succeed("clogfit", "sweep.h5", "--format", "json").stdout)
@@ -137,7 +138,7 @@ class Commands(Analysis):
             done = self.analyse(command, *rest[:rest.index("--")], "--dry-run")
             self.assertEqual(done.returncode, 0, done.stderr)
         else:
-            sweep = {"device": "device.h5", "clogs": "wrapped.h5"}.get(command, "sweep.h5")
+            sweep = {"device": "device.h5", "clogs": "wrapped.h5", "daughters": "families.h5"}.get(command, "sweep.h5")
             stand_ins = {"/dev/stdin": "fit.json", "sweep.h5": sweep}
             if command == "export":  # The command never replaces a file.
                 (self.folder / rest[-1]).unlink(missing_ok=True)

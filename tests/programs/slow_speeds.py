@@ -1,4 +1,4 @@
-"""Compares mean speeds of runs of different lengths. The length must not matter."""
+"""Compares mean speeds of runs of different lengths. The speed must not depend on the length."""
 
 import json
 import math
@@ -6,7 +6,8 @@ import unittest
 
 from support import ProgramTest
 
-# Stiff disks in gaps of 1, as in figure 9a. The array is longer than any path. Nobody chose by these seeds.
+# Stiff disks in gaps of 1, as in figure 9a. The array is longer than any path. No parameter was chosen by means of
+# these seeds.
 STIFF = ["model=sp", "wall-stiffness=100", "obstacle-density=saturated", "obstacle-gap=1",
          "obstacle-diameter=0.3", "box=45", "boxes=12"]
 
@@ -32,13 +33,13 @@ class Speeds(ProgramTest):
         short, middle, long = groups
         for one, other in ((short, middle), (short, long), (middle, long)):
             self.assert_equal(one, other)
-        # The mean of the runs' own speeds is too high in short runs, so this test can see a bias.
+        # The mean of the runs' own speeds is too high in short runs. So this test can detect a bias.
         bias = short["relative_speed"] - long["relative_speed"]
         self.assertGreater(bias, 4 * math.hypot(short["relative_speed_error"], long["relative_speed_error"]))
 
     def test_the_fixed_start_is_late_enough(self):
-        # With ten times as many short runs, the window from 167 to 300 t0, where the release would show most, has the speed of
-        # long runs. From the release on, the speed is clearly higher.
+        # With ten times as many short runs, the window from 167 to 300 t0 has the speed of long runs. An effect of the
+        # release would be largest in this window. From the release on, the speed is clearly higher.
         short, long = self.group(300, "20001..28000"), self.group(20000, "28001..28800")
         self.assert_equal(short, long)
         error = math.hypot(short["relative_speed_all_error"], long["relative_speed_steady_error"])

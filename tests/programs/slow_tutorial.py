@@ -1,5 +1,5 @@
-"""Runs the commands on pages of the handbook without changes. Each page begins in an empty folder, except for the
-tutorial, whose pages share one folder and are run one after the other.
+"""Runs the commands on pages of the handbook without changes. Each page begins in an empty folder. The pages of the
+tutorial are an exception: they share one folder and are run one after the other.
 
 Blocks of `bash` and `python` are run. The first line of a block of `text` must be in their output, apart from its
 numbers. Every file that a page names must exist at the end.
@@ -38,7 +38,7 @@ class Pages(ProgramTest):
             self.assertTrue((self.folder / name).exists(), f"{path} names {name}, which is not there")
 
     def test_the_tutorial(self):
-        """Readers of the tutorial stay in one folder, so the files of one page must not disturb another page."""
+        """Readers of the tutorial stay in one folder, so the files of one page must not affect another page."""
         self.assertGreaterEqual(len(pages.tutorial()), 3)
         for page in pages.tutorial():
             self.follow(page)
@@ -46,15 +46,11 @@ class Pages(ProgramTest):
     def test_the_sweep_of_the_first_page(self):
         self.follow("README.md")
 
-    def test_other_random_arrays(self):
-        self.follow("docs/how-to/other-arrays.md")
-
     def test_obstacles_of_your_own(self):
         self.follow("docs/how-to/own-obstacles.md")
 
     def test_a_lattice(self):
         self.follow("docs/how-to/lattice.md")
-        self.follow("docs/how-to/lateral-displacement.md")
 
     def test_contact_angles(self):
         self.follow("docs/how-to/contact-angles.md")

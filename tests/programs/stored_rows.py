@@ -1,4 +1,4 @@
-"""Changes results in a sweep's file, and makes the checksums correct again. The module is a second implementation of
+"""Changes results in a sweep's file, and makes the checksums correct again. This module is a second implementation of
 the format, in Python."""
 
 import zlib

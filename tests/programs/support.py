@@ -15,7 +15,7 @@ import unittest
 import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
-# Tests need to know whose mpirun this is, because those of Open MPI and MPICH behave differently.
+# Tests need to know the MPI of this mpirun, because those of Open MPI and MPICH behave differently.
 _mpi = re.search(r"^MPI: (.*) v?(\d+)",
                  subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout,
                  re.MULTILINE)
@@ -44,10 +44,14 @@ SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "se
 # The same runs, but they take hours. The runs are in progress until something ends them, even if the test has to wait
 # long for the processor.
 ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
-# The obstacles are so close to each other that for some seeds (53 and 64 of 51..70) there is no void for the release of
-# the droplet.
+# The obstacles are so close together that some seeds (53 and 64 of 51..70) give no void for the release of the droplet.
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3",
            "obstacle-gap=0.06", "self-contact-range=0.1"]
+# Soft droplets that break up, some of them twice, within a second
+FAMILIES = ["break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02", "line-tension=0.05",
+            "vertices=64", "box=20", "obstacle-density=0.8", "obstacle-gap=0.3", "max-time=700", "seeds=1..4"]
+# The first bytes of a snapshot of a daughter (src/core/run/family.cpp)
+SNAPSHOT_OF_A_DAUGHTER = (0x636C6F6766000001).to_bytes(8, "little")
 # Columns that may differ when the same run is recomputed. The columns state who computed the run, and how long this
 # took.
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
@@ -79,7 +83,7 @@ def shared_sweep(*arguments, program="clogsweep"):
 
 
 def undisturbed(sweep):
-    """The file of the same sweep without disturbance. The last two arguments, --output and its value, are left out."""
+    """The file of the same sweep without disturbance. The last two arguments, --output and its value, are excluded."""
     return shared_sweep(*sweep[:-2])
 
 

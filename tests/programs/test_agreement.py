@@ -1,4 +1,4 @@
-"""Tests the verdicts on the article's statements with artificial curves whose verdicts are known."""
+"""Tests the verdicts on statements of the article (Cheng et al.) with artificial curves that have known verdicts."""
 
 import contextlib
 import csv
@@ -103,7 +103,7 @@ class Lengths(unittest.TestCase):
 
 
 class Frames(unittest.TestCase):
-    """A droplet like an upside-down U, whose inside touches a post."""
+    """A droplet like an upside-down U. The inside of the U touches a post."""
 
     POST = (0.0, 0.0, 0.3)
 
@@ -122,7 +122,7 @@ class Frames(unittest.TestCase):
     def test_hybrids_wrap_a_post_and_fill_a_gap_downstream(self):
         circle = np.radians(np.arange(0, 360, 2))
         droplet = np.array([2 + 1.2 * np.cos(circle), 0.2 * np.sin(circle) + 0.0])  # long along the flow
-        inside = np.array([[1.0, 0.0, 0.3]])  # lies in the droplet, which would touch it all around
+        inside = np.array([[1.0, 0.0, 0.3]])  # is inside the droplet, which would touch it all around
         gap = np.array([[2.0, 0.36, 0.3], [2.0, -0.36, 0.3]])
         ring = 0.16 * np.array([np.cos(circle), np.sin(circle)]) + [[1.0], [0.0]]
         wrapping = np.concatenate([droplet, ring], axis=1)

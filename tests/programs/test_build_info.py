@@ -76,7 +76,7 @@ class Sources(unittest.TestCase):
         commit = self.commit()
         self.assertEqual(self.said(), (f"v1.2.3-1-g{commit}", commit))
 
-    def test_changes_that_are_not_committed_are_told(self):
+    def test_uncommitted_changes_are_recorded(self):
         commit = self.commit("v1.2.3")
         with open(self.sources / "cmake/archive_version.txt", "a") as file:
             file.write("\n")

@@ -73,9 +73,9 @@ class Calibrate(OnATerminal):
         noisy = v * (1 + 0.02 * np.random.default_rng(5).standard_normal(len(v)))
         self.write("wrong.csv",
                    "\n".join(["h [sigma], v [v_t]", *(f"{a:.5g},{1.25 * b:.5g}" for a, b in zip(h, noisy))]))
-        told = self.succeed("clogfit", "calibrate", "wrong.csv", *CHANNEL, "terminal-speed=0.05").stdout
-        self.assertTrue(told.startswith("channel: orifice=0.9 wedge-angle=45 "), told)
-        self.assertRegex(told, r"note: wrong.csv: the speeds of successive frames differ alike .*look at V_t")
+        printed = self.succeed("clogfit", "calibrate", "wrong.csv", *CHANNEL, "terminal-speed=0.05").stdout
+        self.assertTrue(printed.startswith("channel: orifice=0.9 wedge-angle=45 "), printed)
+        self.assertRegex(printed, r"note: wrong.csv: the speeds of successive frames differ alike .*look at V_t")
 
     def test_a_signal_ends_it_with_the_best_so_far(self):
         self.write("trial.csv",
@@ -87,17 +87,17 @@ class Calibrate(OnATerminal):
                                "vertices=256", "--format=json"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=theirs) as process:
             os.close(theirs)
-            told = b""
-            while b"Delta_v" not in told and (some := self.read_some(ours)):
-                told += some
+            printed = b""
+            while b"Delta_v" not in printed and (some := self.read_some(ours)):
+                printed += some
             process.send_signal(signal.SIGINT)
             while some := self.read_some(ours):
-                told += some
+                printed += some
             self.assertEqual(process.stdout.read(), b"")
-        self.assertEqual(process.returncode, 75, told)
+        self.assertEqual(process.returncode, 75, printed)
         best = r"Delta_v down to \S+, with Gamma = [0-9.e+-]+, b_0/b_inf = [0-9.e+-]+"
-        self.assertRegex(told.decode(), rf"\r\d+ simulations?, {best}, ")
-        self.assertRegex(told.decode(), rf"clogfit calibrate: stopped by a signal; trial.csv: {best}\r\n$")
+        self.assertRegex(printed.decode(), rf"\r\d+ simulations?, {best}, ")
+        self.assertRegex(printed.decode(), rf"clogfit calibrate: stopped by a signal; trial.csv: {best}\r\n$")
 
     def test_it_reads_only_channel_runs_of_clogrun(self):
         keys = ["vertices=32", "line-tension=0.3", "terminal-speed=0.3"]

@@ -48,8 +48,8 @@ def first_half(profile):
 
 
 def clogging(tension, near_wall_drag):
-    """The passage of a droplet whose smallest speed falls to zero as the line tension reaches 1. The profile has bumps
-    that move with the line tension."""
+    """The passage of a droplet with a smallest speed that falls to zero as the line tension reaches 1. The profile has
+    bumps that move with the line tension."""
     h = np.arange(-1, 1, 0.004)
     if tension >= 1:
         h = h[h <= -0.1]
@@ -75,7 +75,7 @@ class Deviations(unittest.TestCase):
         with self.assertRaisesRegex(UserError, "^2 measured frames, down to h = -0.75, are upstream of the simulated "
                                                "start at h = 0; .*start=-1.25, or delete these frames"):
             deviation(frames([-0.75, 1, 1], [-0.5, 1, 1], [0.5, 1, 1]), self.stuck)
-        # A droplet that is pushed back has not started there.
+        # A droplet that is pushed back did not start at this place.
         with self.assertRaisesRegex(UserError, "^1 measured frame, .*is upstream of"):
             deviation(frames([-0.5, 1, 1]), frames([0, 1, 1], [-1, 1, 1], [1, 1, 1]))
         with self.assertRaisesRegex(UserError, "in the order of time$"):
@@ -125,7 +125,7 @@ class Calibrations(unittest.TestCase):
         number = 40
         found = [search.calibrate(measured(model(0.8, 0.1), 0.02, seed), model) for seed in range(number)]
         every = calibrate.means(found)
-        # The scatter of 40 results is known to 11 %. The error of their mean is this scatter divided by the square root
+        # The scatter of 40 results is known to 11 %. The error of their mean is the scatter divided by the square root
         # of 40.
         self.assertAlmostEqual(every["line_tension_deviation"] / np.mean([one.line_tension_error for one in found]),
                                1, delta=0.35)
@@ -166,8 +166,8 @@ class Calibrations(unittest.TestCase):
 
     def test_the_end_of_the_range_is_reported(self):
         for tension, near_wall_drag, is_at_bound in ((100, 0.1, True), (1, 5, True), (1, 0, False)):
-            told = " ".join(search.calibrate(measured(model(tension, near_wall_drag)), model).warnings)
-            self.assertEqual("the best is at the end of what was searched" in told, is_at_bound, told)
+            printed = " ".join(search.calibrate(measured(model(tension, near_wall_drag)), model).warnings)
+            self.assertEqual("the best is at the end of what was searched" in printed, is_at_bound, printed)
 
     def test_frames_that_no_simulation_reaches_are_counted(self):
         seen = measured(model(1, 0.1))
@@ -176,10 +176,10 @@ class Calibrations(unittest.TestCase):
         self.assertAlmostEqual(int(number), len(seen.h) / 2, delta=1)
 
     def test_every_simulation_is_reported_and_a_search_is_repeatable(self):
-        told = []
-        found = search.calibrate(measured(model(1, 0.1), 0.02), model, lambda *attempt: told.append(attempt))
-        self.assertGreaterEqual(len(told), found.simulations)  # Two threads may have tried the same value.
-        self.assertAlmostEqual(min(delta for _, _, delta in told), found.delta_v, places=12)
+        printed = []
+        found = search.calibrate(measured(model(1, 0.1), 0.02), model, lambda *attempt: printed.append(attempt))
+        self.assertGreaterEqual(len(printed), found.simulations)  # Two threads may have tried the same value.
+        self.assertAlmostEqual(min(delta for _, _, delta in printed), found.delta_v, places=12)
         self.assertEqual(search.calibrate(measured(model(1, 0.1), 0.02), model)[:4], found[:4])
 
     def test_what_a_simulation_throws_ends_the_search(self):

@@ -26,7 +26,7 @@ EXPONENTIAL = -np.log(1 - (np.arange(10) + 0.5) / 10)
 
 
 class Mixtures(ProgramTest):
-    """clogfit of files whose droplets are in arrays, in channels and on flat walls."""
+    """Tests clogfit with files of droplets in arrays, in channels and on flat walls."""
 
     def setUp(self):
         super().setUp()
@@ -96,7 +96,7 @@ class Mixtures(ProgramTest):
         gaps = ["seeds=1", "obstacle-gap=0.3,0.5"]
         self.succeed("clogsweep", *QUICK[:1], *gaps, "box=20", "max-time=1", "--output", "dp.h5")
         self.succeed("clogsweep", "model=sp", "wall-stiffness=5", *gaps, "box=30", "max-time=2", "--output", "sp.h5")
-        # All runs share nothing unusual.
+        # No parameter that all runs have in common is unusual.
         self.assertTrue(self.fit("dp.h5", "sp.h5").startswith("runs with model=dp: "))
         mixture = "--mixture=obstacle-gap=0.3:1,0.5:1"
         self.refuse("clogfit", "dp.h5", "sp.h5", mixture,
@@ -107,7 +107,8 @@ class Mixtures(ProgramTest):
 
 
 class GivenKeys(ProgramTest):
-    """Keys of numerics that were given are columns or words of the table, even if they vary together with others."""
+    """Numerical keys that the user has set are columns of the table, or words above it if all runs share the value,
+    even if they vary together with other keys."""
 
     SETTINGS = ["box=20", "obstacle-density=saturated", "max-time=5", "seeds=1"]
 
@@ -138,22 +139,22 @@ class GivenKeys(ProgramTest):
         for name, tension, stiffness in (("a.h5", 1, 0.5), ("b.h5", 2, 0.7)):
             self.succeed("clogsweep", *self.SETTINGS, f"line-tension={tension}", f"wall-stiffness={stiffness}",
                          "--output", name)
-        told = self.succeed("clogfit", "a.h5", "b.h5").stdout
-        self.assertIn("wall_stiffness", told)
-        self.assertNotIn("vertices", told)
+        printed = self.succeed("clogfit", "a.h5", "b.h5").stdout
+        self.assertIn("wall_stiffness", printed)
+        self.assertNotIn("vertices", printed)
 
     def test_one_given_value_among_automatic_ones_is_a_column(self):
         _, lines = self.table_of("line-tension,vertices\n1,32\n2,\n")
         self.assertEqual([line["vertices"] for line in lines], ["32", "128*"])
         self.assertIn("\n*: the automatic value", self.succeed("clogfit", "s.h5").stdout)
 
-    def test_values_that_follow_from_given_ones_are_not_told(self):
+    def test_values_that_follow_from_given_ones_are_not_printed(self):
         for given in (["wall-stiffness=1"], ["time-step=0.001"], ["time-step=0.0005", "wall-stiffness=0.5"]):
             shared, _ = self.table_of("line-tension\n1\n", *given)
-            told = {word.split("=")[0] for word in shared.split()} & {"time_step", "wall_stiffness", "vertices"}
-            self.assertEqual(told, {word.split("=")[0].replace("-", "_") for word in given})
+            printed = {word.split("=")[0] for word in shared.split()} & {"time_step", "wall_stiffness", "vertices"}
+            self.assertEqual(printed, {word.split("=")[0].replace("-", "_") for word in given})
 
-    def test_a_given_ratio_of_stiffness_and_tension_is_told(self):
+    def test_a_given_ratio_of_stiffness_and_tension_is_printed(self):
         _, lines = self.table_of("line-tension\n1\n2\n", "perimeter-spring=rest", "perimeter-stiffness-ratio=3")
         self.assertEqual([float(line["perimeter_stiffness"]) for line in lines], [3, 6])
 
@@ -172,7 +173,7 @@ class GivenKeys(ProgramTest):
 
 
 class Profiles(ProgramTest):
-    """clogfit drag and clogfit deviation with CSV files."""
+    """Tests clogfit drag and clogfit deviation with CSV files."""
 
     def test_the_exponent_of_the_near_wall_drag_comes_from_speeds_along_a_wall(self):
         distances = [0.05, 0.1, 0.3, 1.0]
@@ -254,9 +255,9 @@ class Fit(ProgramTest):
         self.assertEqual(len(self.fit()["groups"]), 2)
         group, = self.fit("--pool=max-time")["groups"]
         self.assertEqual((group["runs"], group["repeated"], group["total_distance"]), (4, 4, long[0]["total_distance"]))
-        told = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
-        self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", told)
-        self.assertIn("groups that differ only in max-time are joined (--pool)\n", told)
+        printed = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
+        self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", printed)
+        self.assertIn("groups that differ only in max-time are joined (--pool)\n", printed)
         # With another number of boxes the same seed gives another array. So these runs do not repeat droplets, and all
         # of them count.
         self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
@@ -304,7 +305,7 @@ class Fit(ProgramTest):
 
     def expected_endings(self, table, dwell):
         """The distance of each run until its droplet rested longer than `dwell`, and whether the droplet rested so
-        long. Both results are computed only from the table."""
+        long. Both are computed from the table alone."""
         for row, dwells in zip(table.itertuples(), self.longest_first(table)):
             stood = [place for length, place in reversed(dwells) if length > dwell]
             is_clogged = row.status == "clogged"
@@ -348,8 +349,7 @@ class Fit(ProgramTest):
                 self.assertGreaterEqual(longer_way, way)
                 self.assertLessEqual(fewer_clogs, clogs)
         self.assertLess(results[0], results[-1])
-        # No run can have rested for its whole duration, so with these dwells the numbers are the same as without
-        # --dwell.
+        # No run can have rested for its whole duration. So with these dwells the numbers equal those without --dwell.
         usual = self.fit()["groups"]
         for dwell in (400, 1e9):
             self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
@@ -431,7 +431,7 @@ class Fit(ProgramTest):
                                                        met, False),  # droplets that were still moving
                                                       (0, np.repeat(apart[:6], 2), met,
                                                        True), (0, apart, met, False), (12, np.zeros(12), met, True),
-                                                      # Droplets that sink freely all go as far.
+                                                      # Droplets that sink freely all reach the same distance.
                                                       (0, [9.0] * 12, {"contacts": 0, "first_contact_at": np.nan}, False)]:
             self.change(distance=distance, status=[b"clogged"] * clogs + [b"flowing"] * (12 - clogs), **are_met)
             doubts = (self.fit()["groups"][0]["doubts"] or "").split()
@@ -518,7 +518,7 @@ class Fit(ProgramTest):
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
         self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
 
-    def test_a_list_of_vertices_is_told_though_they_may_be_automatic(self):
+    def test_a_list_of_vertices_is_printed_though_they_may_be_automatic(self):
         self.succeed("clogsweep", "seeds=1..2", "vertices=64,96", "box=20", *FAR, "--output", "sweep.h5")
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"\nobstacle_gap +line_tension +vertices +runs")
 
@@ -672,7 +672,7 @@ class Fit(ProgramTest):
     def test_failed_runs_are_censored_where_they_were_sound(self):
         self.sweep("seeds=1..7", *FAR)
         status = [b"clogged"] * 3 + [b"flowing"] + [b"failed"] * 3
-        # What a failed droplet did after its last passed check is of no use, whatever it is.
+        # The results of a failed droplet after its last passed check have no effect.
         self.change(distance=[1, 2.5, 7, 10, 1e300, np.nan, 12], sound_distance=[1, 2.5, 7, 10, 0.5, 4, 6.25],
                     status=status, failed_by=[b"none"] * 4 + [b"divergence", b"crash", b"crossing"])
         group, = self.fit()["groups"]
@@ -693,7 +693,7 @@ class Fit(ProgramTest):
         self.assertRegex(text, r"failed +per 1000 sigma .*\n.* 3 +96\.0 ")
         self.assertIn("3 failed; the column `message` says why, and counted as not clogged up to sound_distance", text)
         self.succeed("clogsweep", "verify", "sweep.h5")
-        # A failed run that ended before the distance from which on runs are observed is left out like any other.
+        # A failed run that ended before the distance from which on runs are observed is excluded, like any other run.
         group, = self.fit("--from-distance", 5)["groups"]
         self.assertEqual((group["runs"], group["left_out"], group["total_distance"]), (3, 4, 2 + 5 + 1.25))
 

@@ -84,17 +84,17 @@ class Run(ProgramTest):
                 keys = ["line-tension=0", "max-time=1"]
                 done = self.run_program("clogrun", *system, *keys)
                 self.assertEqual(done.stderr.splitlines()[0],
-                                 "outside the range tested for soundness (handbook, Which droplets are sound): line-tension=0 "
+                                 "outside the range tested for soundness (handbook, How far to trust it): line-tension=0 "
                                  "(robust is tested from 0.05 to 10)")
         self.assertEqual(self.succeed("clogrun", "array", *SMALL, "max-time=1", "--output", "sound.h5").stderr, "")
 
     def test_a_coarse_polygon_in_a_channel_is_cautioned_against(self):
-        for vertices, told in ((96, ["with vertices=96 a droplet may clog where it passes with 128 or more "
-                                     "(corners of the polygon catch on the wedges' tips); "
-                                     "use vertices=128 or more"]), (128, [])):
+        for vertices, printed in ((96, ["with vertices=96 a droplet may clog where it passes with 128 or more "
+                                        "(corners of the polygon catch on the wedges' tips); "
+                                        "use vertices=128 or more"]), (128, [])):
             done = self.succeed("clogrun", "channel", f"vertices={vertices}", "max-time=1",
                                 "--output", f"{vertices}.h5")
-            self.assertEqual(done.stderr.splitlines(), told)
+            self.assertEqual(done.stderr.splitlines(), printed)
 
     def test_it_writes_the_trajectory(self):
         done = self.succeed("clogrun", "array", *QUICK, "obstacle-gap=1.2", "--sample-interval", 2, "time-step=1e-3",
@@ -166,10 +166,10 @@ class Run(ProgramTest):
     def test_the_posts_of_a_triangular_lattice_are_its_pitch_apart(self):
         keys = ["model=sp", "wall-stiffness=10", "obstacle-layout=lattice", "lattice=triangular",
                 "pitch=2", "lattice-angle=19.1", "box=10", "max-time=1"]
-        told = self.succeed("clogrun", "array", *keys, "--output", "a.h5", "--dry-run").stdout
+        printed = self.succeed("clogrun", "array", *keys, "--output", "a.h5", "--dry-run").stdout
         self.assertIn("# triangular lattice: pitch 2 sigma, rows 1.732 sigma apart, "
                       "at 19.11 degrees (tan = sqrt(3)*1/5); period 5.292 sigma along "
-                      "the flow, 9.165 across, 14 posts\n", told)
+                      "the flow, 9.165 across, 14 posts\n", printed)
         self.succeed("clogrun", "array", *keys, "--write-obstacles", "posts.csv", "--output", "a.h5")
         row = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
         self.assertEqual(row.obstacle_filling, "triangular")
@@ -314,14 +314,14 @@ class Run(ProgramTest):
         self.addCleanup(process.kill)
         time.sleep(1)
         process.send_signal(signal.SIGINT)
-        output, told = process.communicate(timeout=LONGEST)
+        output, printed = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75)
         self.assertTrue(re.match("interrupted after r = ", output), output)
-        self.assertRegex(told, r"no film is drawn; PYTHONPATH=\S+ \S+ -m clogsweep droplet run.h5 --output=film --film "
-                               r"draws what there is\n$")
+        self.assertRegex(printed, r"no film is drawn; PYTHONPATH=\S+ \S+ -m clogsweep droplet run.h5 --output=film --film "
+                         r"draws what there is\n$")
         self.assertGreater(len(pandas.read_hdf(self.folder / "run.h5", "trajectory")), 10)
 
-    def test_a_terminal_is_told_how_far_it_is(self):
+    def test_a_terminal_shows_the_progress(self):
         master, slave = pty.openpty()
         self.addCleanup(os.close, master)
         process = subprocess.Popen(
@@ -331,32 +331,32 @@ class Run(ProgramTest):
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
         os.close(slave)
-        told = b""
+        printed = b""
 
         def read_on():
-            self.assertTrue(select.select([master], [], [], LONGEST)[0], f"nothing more is told after {told}")
+            self.assertTrue(select.select([master], [], [], LONGEST)[0], f"nothing more is printed after {printed}")
             return os.read(master, 1000)
 
-        while told.count(b" left") < 2:
-            told += read_on()
-        self.assertRegex(told.decode(),
+        while printed.count(b" left") < 2:
+            printed += read_on()
+        self.assertRegex(printed.decode(),
                          r"^\rr = \S+ sigma, t = \S+ of at most 1e\+08 t0, .+ so far, at most .+ left\x1b\[K\rr = ")
         process.send_signal(signal.SIGINT)
-        while not told.endswith(b"\r\x1b[K"):
-            told += read_on()
+        while not printed.endswith(b"\r\x1b[K"):
+            printed += read_on()
         self.assertEqual(process.wait(), 75)
 
     def test_a_dry_run_prints_the_config_and_what_it_takes_at_most(self):
         keys = [*SMALL, "line-tension=0.3", "max-time=100", "--polygon-interval", 5]
-        told = self.succeed("clogrun", "array", *keys, "--dry-run", "--output", "run.h5").stdout
+        printed = self.succeed("clogrun", "array", *keys, "--dry-run", "--output", "run.h5").stdout
         self.assertEqual(self.snapshot(), {})
-        self.assertIn("at most 100 t0 in ", told)
+        self.assertIn("at most 100 t0 in ", printed)
         self.assertNotIn(": 0 s on",
                          self.succeed("clogrun", "array", *SMALL, "max-time=0.1", "--dry-run", "--output", "run.h5").stdout)
-        self.assertIn("on this machine", told)
-        samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", told).groups())
-        # The output is a config. The same run must follow from it.
-        self.write("told.cfg", told)
+        self.assertIn("on this machine", printed)
+        samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", printed).groups())
+        # The output is a config. It must give the same run.
+        self.write("told.cfg", printed)
         self.succeed("clogrun", "array", "--config", "told.cfg", "--polygon-interval", 5, "--output", "run.h5")
         with h5py.File(self.folder / "run.h5") as file:
             self.assertEqual(file["runs"]["line_tension"][0], 0.3)
@@ -364,8 +364,8 @@ class Run(ProgramTest):
             self.assertLessEqual(len(file["polygons"]), polygons)
             self.assertLessEqual(len(file["trajectory"]), samples + 1)
         for system in (["channel", "--output", "c.h5"], ["sag", "line-tension=0.1,0.3"]):
-            told = self.succeed("clogrun", *system, "vertices=64", "max-time=50", "--dry-run").stdout
-            self.assertIn("at most 50 t0" if system[0] == "channel" else "at most 100 t0", told)
+            printed = self.succeed("clogrun", *system, "vertices=64", "max-time=50", "--dry-run").stdout
+            self.assertIn("at most 50 t0" if system[0] == "channel" else "at most 100 t0", printed)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("words.csv", "x,y\n1,2\n3,four\n")

@@ -17,9 +17,9 @@ import pandas
 import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
-# Columns that are no results. These columns state where and how fast a row was computed.
+# Columns that are not results: they state where and how fast a row was computed.
 CIRCUMSTANCES = ["wall_seconds", "processor_seconds", "rank", "host"]
-# A library that writes to the file FORK_LOG which process has forked, and which has started MPI.
+# A library that writes to the file FORK_LOG which process has forked, and which process has started MPI.
 FORK_LOGGER = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -110,14 +110,14 @@ class Sweep(ProgramTest):
                 self.assertTrue(file.attrs[name], name)
             self.assertEqual(file.id.get_create_plist().get_version()[0], 0, "the earliest file format")
 
-    def test_the_pages_of_the_format_list_every_column_and_attribute(self):
+    def test_the_page_of_the_format_lists_every_column_and_attribute(self):
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
-        columns, attributes = ((ROOT / "docs/reference" / page).read_text() for page in ("columns.md", "files.md"))
+        page = (ROOT / "docs/reference/files.md").read_text()
         with h5py.File(self.folder / "s.h5", "r") as file:
             for name in file["runs"].dtype.names:
-                self.assertIn(f"`{name}`", columns)
+                self.assertIn(f"`{name}`", page)
             for name in file.attrs:
-                self.assertIn(f"`{name}`", attributes)
+                self.assertIn(f"`{name}`", page)
 
     def test_the_stored_config_repeats_the_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=log(0.3,3,2)", "seeds=1..2", "--output", "first.h5")
@@ -178,8 +178,8 @@ class Sweep(ProgramTest):
         of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
         # Nothing remains for an estimate.
-        told = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
-        self.assertEqual(told, f"# s.h5 has all 6 runs, which took {hours:.2g} core-hours; nothing is left to do")
+        printed = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
+        self.assertEqual(printed, f"# s.h5 has all 6 runs, which took {hours:.2g} core-hours; nothing is left to do")
 
     def test_a_dry_run_estimates_remaining_runs_from_their_own_parameter_set(self):
         sweep = [*QUICK, "--output", "s.h5"]
@@ -190,9 +190,9 @@ class Sweep(ProgramTest):
             rows["processor_seconds"] = np.where(rows["line_tension"] == 0.5, 1000, 1)
 
         stored_rows.change(self.folder / "s.h5", edit)
-        told = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6",
-                            "--dry-run").stdout.splitlines()[-1]
-        self.assertIn(f"9 of 12 runs; 3 to go: expected {3 / 3600:.2g} core-hours more ", told)
+        printed = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6",
+                               "--dry-run").stdout.splitlines()[-1]
+        self.assertIn(f"9 of 12 runs; 3 to go: expected {3 / 3600:.2g} core-hours more ", printed)
 
     def test_the_expected_cost_is_within_its_interval_and_its_limit(self):
         sweep = [*QUICK, "--output", "s.h5"]
@@ -209,23 +209,23 @@ class Sweep(ProgramTest):
             stored_rows.change(self.folder / "s.h5", edit)
             for more in (["line-tension=0.1,1", "seeds=1..6"], ["line-tension=0.1,1,2", "seeds=1..30"],
                          ["line-tension=0.1,1", "seeds=1..12", "--until-precision=20%", "--most-seeds=40"]):
-                told = self.succeed("clogsweep", *sweep, *more, "--dry-run").stdout
-                bound = float(re.search(f"at most {number}", told)[1])
-                for expected, lower, upper, limit in re.findall(r"expected (\S+) core-hours \(95 %: (\S+) to ([^)]+)\)(?:, at most (\S+))?", told):
+                printed = self.succeed("clogsweep", *sweep, *more, "--dry-run").stdout
+                bound = float(re.search(f"at most {number}", printed)[1])
+                for expected, lower, upper, limit in re.findall(r"expected (\S+) core-hours \(95 %: (\S+) to ([^)]+)\)(?:, at most (\S+))?", printed):
                     # The numbers are printed with two or three digits.
-                    self.assertLessEqual(float(lower), 1.05 * float(expected), told)
-                    self.assertLessEqual(float(expected), 1.05 * float(upper), told)
+                    self.assertLessEqual(float(lower), 1.05 * float(expected), printed)
+                    self.assertLessEqual(float(expected), 1.05 * float(upper), printed)
                     if limit:
-                        self.assertLessEqual(float(upper), 1.05 * float(limit), told)
-                    elif "all rounds" not in told:
-                        self.assertLessEqual(float(upper), 1.05 * bound, told)
+                        self.assertLessEqual(float(upper), 1.05 * float(limit), printed)
+                    elif "all rounds" not in printed:
+                        self.assertLessEqual(float(upper), 1.05 * bound, printed)
 
     def test_runs_beyond_shorter_lists_stay_and_are_counted_everywhere(self):
         sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
         self.assertNotIn("beyond", self.succeed("clogsweep", *sweep, "seeds=1..5").stderr)
         self.assertIn("10 rows of 10 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
-        told = self.succeed("clogsweep", *sweep, "seeds=1..3").stderr
-        self.assertIn("s.h5 also has 4 runs outside this command's lists; they are kept", told)
+        printed = self.succeed("clogsweep", *sweep, "seeds=1..3").stderr
+        self.assertIn("s.h5 also has 4 runs outside this command's lists; they are kept", printed)
         beyond = "(4 outside the lists of its last command)"
         self.assertIn(f"10 rows of 10 runs {beyond}, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         status = self.succeed("clogsweep", "status", "s.h5").stdout
@@ -234,7 +234,7 @@ class Sweep(ProgramTest):
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertEqual((status["runs"], status["finished"], status["runs_beyond_lists"]), (10, 10, 4))
 
-    def test_an_array_that_may_repeat_is_told_once_when_the_sweep_starts(self):
+    def test_an_array_that_may_repeat_is_named_once_when_the_sweep_starts(self):
         sweep = [*SMALL, "max-time=700", "seeds=1", "--output", "s.h5"]
         repeats = "may travel farther than the length of their array"
         self.assertEqual(self.succeed("clogsweep", *sweep, ranks=2).stderr.count(repeats), 1)
@@ -261,15 +261,15 @@ class Sweep(ProgramTest):
     def test_a_dry_run_of_many_tasks_shows_the_first_and_the_last(self):
         for seeds, num_tasks in [("1..500", 1000), ("1..501", 1002), ("1..1000000", 2_000_000)]:
             with self.subTest(tasks=num_tasks):
-                told = self.succeed("clogsweep", *QUICK, "line-tension=2,3", f"seeds={seeds}", "--dry-run").stdout
-                tasks = [int(line.split()[0]) for line in told.splitlines() if line[0].isdigit()]
-                self.assertIn(f"# {num_tasks} tasks: 2 parameter sets, {num_tasks // 2} seeds each", told)
+                printed = self.succeed("clogsweep", *QUICK, "line-tension=2,3", f"seeds={seeds}", "--dry-run").stdout
+                tasks = [int(line.split()[0]) for line in printed.splitlines() if line[0].isdigit()]
+                self.assertIn(f"# {num_tasks} tasks: 2 parameter sets, {num_tasks // 2} seeds each", printed)
                 if num_tasks == 1000:
                     self.assertEqual(tasks, list(range(1000)))
-                    self.assertNotIn("more", told)
+                    self.assertNotIn("more", printed)
                 else:
                     self.assertEqual(tasks, [*range(20), *range(num_tasks - 20, num_tasks)])
-                    self.assertIn(f"# ... {num_tasks - 40} more ...", told)
+                    self.assertIn(f"# ... {num_tasks - 40} more ...", printed)
 
     def test_a_dry_run_as_json_has_a_line_with_the_tasks_then_one_with_the_cost(self):
         sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
@@ -306,12 +306,12 @@ class Sweep(ProgramTest):
             self.refuse("clogsweep", *QUICK, *words, words=[reason])
 
     def test_a_dry_run_within_the_box_and_the_tested_range_has_nothing_to_add(self):
-        told = self.succeed("clogsweep", *QUICK, "--dry-run").stdout
-        self.assertNotIn("box", told)
-        self.assertNotIn("soundness", told)
-        told = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
-        self.assertIn("# droplets of 1 of 1 parameter set may travel farther than the length of their array ", told)
-        self.assertIn("# outside the range tested for soundness (handbook, Which droplets are sound): line-tension=30 ",
+        printed = self.succeed("clogsweep", *QUICK, "--dry-run").stdout
+        self.assertNotIn("box", printed)
+        self.assertNotIn("soundness", printed)
+        printed = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
+        self.assertIn("# droplets of 1 of 1 parameter set may travel farther than the length of their array ", printed)
+        self.assertIn("# outside the range tested for soundness (handbook, How far to trust it): line-tension=30 ",
                       self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
     def test_what_was_not_tested_is_said_once_when_the_sweep_starts(self):
@@ -323,11 +323,11 @@ class Sweep(ProgramTest):
         self.assertNotIn("soundness", self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
         self.assertEqual(self.succeed("clogsweep", *sweep[:-1], "quiet.h5", "--quiet").stderr, "")
 
-    def test_one_of_a_kind_is_told_in_the_singular(self):
+    def test_one_of_a_kind_is_printed_in_the_singular(self):
         sweep = [*QUICK, "line-tension=0.5", "seeds=1", "--output", "s.h5"]
-        told = self.succeed("clogsweep", *sweep, "--dry-run").stdout
-        self.assertIn("# 1 task: 1 parameter set, 1 seed each\n", told)
-        self.assertIn(", from 1 run tried ", told)
+        printed = self.succeed("clogsweep", *sweep, "--dry-run").stdout
+        self.assertIn("# 1 task: 1 parameter set, 1 seed each\n", printed)
+        self.assertIn(", from 1 run tried ", printed)
         self.assertIn("1 run on 1 computing rank, results go to s.h5\n", self.succeed("clogsweep", *sweep).stderr)
         self.assertIn("s.h5 has 1 of 1 run; there is nothing left to do\n", self.succeed("clogsweep", *sweep).stderr)
         self.assertIn("s.h5: 1 of 1 run finished, ", self.succeed("clogsweep", "status", "s.h5").stdout)
@@ -402,7 +402,7 @@ class Isolated(ProgramTest):
         return process
 
     def children_of(self, pid):
-        # `pgrep` is not used here, because on a busy machine a run might end before `pgrep` has looked.
+        # `pgrep` is not used here: on a busy machine a run might end before `pgrep` has searched for it.
         children = []
         for thread in glob.glob(f"/proc/{pid}/task/*/children"):
             with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # the thread may have ended since
@@ -452,7 +452,7 @@ class Isolated(ProgramTest):
         sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
         process = self.start(*sweep)
         computing = self.computing_process(process)
-        # Waits for the first snapshot. Without a snapshot the resumed run would start from its beginning.
+        # Waits for the first snapshot. Without a snapshot the resumed run would start at its release.
         self.wait_for(lambda: table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any())
         os.kill(computing, signal.SIGSTOP)
         time.sleep(0.5)  # During this time the rank requests reports.
@@ -463,7 +463,7 @@ class Isolated(ProgramTest):
         self.assertGreater(rows.distance[0], 0, "the last report counts")
         self.wait_for_end_of([computing])
         hung_at = rows.distance[0]
-        # The process stops again before its first report. So its state must be the state in the stored row.
+        # The process stops again before its first report. So its state must be that of the stored row.
         process = self.start(*sweep[:2], "--report-seconds=100")
         os.kill(self.computing_process(process), signal.SIGSTOP)
         process.send_signal(signal.SIGTERM)

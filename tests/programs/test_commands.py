@@ -25,7 +25,7 @@ class Meant(ProgramTest):
         self.write("drug", "")
         self.refuse("clogfit", "drug", words=["cannot read drug"])
 
-    def test_surplus_words_are_told_where_they_belong(self):
+    def test_a_message_says_where_surplus_words_belong(self):
         self.refuse("clogsweep", "s.h5", words=["no place for 's.h5'", "--output", "clogsweep status"])
         self.refuse("clogfit", "a.h5", "b.h5", "c.h5", words=["cannot read a.h5 (no such file)"])
 
@@ -36,24 +36,24 @@ class Meant(ProgramTest):
                     words=["no place for 'line-tension'; did you mean line-tension=VALUE?"])
 
     def test_an_unknown_key_is_quoted_as_it_was_typed(self):
-        for typed, told in [("line-tensoin=1", "unknown key line-tensoin; did you mean line-tension?"),
-                            ("--line-tensoin=1", "unknown option --line-tensoin; did you mean --line-tension?"),
-                            ("frobnicate=1", "unknown key frobnicate; clogsweep --help lists the options")]:
-            self.refuse("clogsweep", typed, "--output", "s.h5", words=[told])
+        for typed, printed in [("line-tensoin=1", "unknown key line-tensoin; did you mean line-tension?"),
+                               ("--line-tensoin=1", "unknown option --line-tensoin; did you mean --line-tension?"),
+                               ("frobnicate=1", "unknown key frobnicate; clogsweep --help lists the options")]:
+            self.refuse("clogsweep", typed, "--output", "s.h5", words=[printed])
 
     def test_a_part_of_a_key_or_its_symbol_is_answered_with_the_key(self):
-        for typed, told in [("gap=0.3", "unknown key gap; did you mean obstacle-gap?"),
-                            ("--gap=0.3", "unknown option --gap; did you mean --obstacle-gap?"),
-                            ("contact=edge", "unknown key contact; did you mean wall-contact or self-contact?"),
-                            ("obstacle=a.csv",
-                             "unknown key obstacle; did you mean obstacles or obstacle-gap or obstacle-density?"),
-                            ("Gamma=0.3", "unknown key Gamma; did you mean line-tension?"),
-                            ("Γ=0.3", "unknown key Γ; did you mean line-tension?"),
-                            ("w_ob=0.3", "unknown key w_ob; did you mean obstacle-gap?"),
-                            ("Nv=64", "unknown key Nv; did you mean vertices?"),
-                            ("Frobnicate=0.3", "unknown key Frobnicate; clogsweep --help lists the options")]:
+        for typed, printed in [("gap=0.3", "unknown key gap; did you mean obstacle-gap?"),
+                               ("--gap=0.3", "unknown option --gap; did you mean --obstacle-gap?"),
+                               ("contact=edge", "unknown key contact; did you mean wall-contact or self-contact?"),
+                               ("obstacle=a.csv",
+                                "unknown key obstacle; did you mean obstacles or obstacle-gap or obstacle-density?"),
+                               ("Gamma=0.3", "unknown key Gamma; did you mean line-tension?"),
+                               ("Γ=0.3", "unknown key Γ; did you mean line-tension?"),
+                               ("w_ob=0.3", "unknown key w_ob; did you mean obstacle-gap?"),
+                               ("Nv=64", "unknown key Nv; did you mean vertices?"),
+                               ("Frobnicate=0.3", "unknown key Frobnicate; clogsweep --help lists the options")]:
             with self.subTest(typed=typed):
-                self.refuse("clogsweep", typed, "--output", "s.h5", words=[told + "\n"])
+                self.refuse("clogsweep", typed, "--output", "s.h5", words=[printed + "\n"])
         self.refuse("clogrun", "array", "Gamma=0.3", "--output", "r.h5", words=["did you mean line-tension?"])
         self.refuse("clogfit", "--N_v=64", words=["unknown option --N_v; clogfit --help lists the options"])
         self.write("bad.cfg", "gap = 0.3\n")
@@ -76,8 +76,8 @@ class Meant(ProgramTest):
     def test_helps_have_each_heading_once(self):
         for words in (["clogsweep", "status"], ["clogsweep", "doctor"], ["clogfit", "drag"], ["clogfit", "deviation"],
                       ["clogfit", "calibrate"], ["clogrun"], ["clogfit"]):
-            told = self.succeed(*words, "--help").stdout
-            self.assertEqual(told.lower().count("\noptions:\n"), 1, told)
+            printed = self.succeed(*words, "--help").stdout
+            self.assertEqual(printed.lower().count("\noptions:\n"), 1, printed)
 
     def test_a_byte_order_mark_is_passed_over(self):
         self.write("bom.cfg", "\ufeffline-tension = 0.5\n")
@@ -99,7 +99,7 @@ class Meant(ProgramTest):
             done = self.run_program("clogsweep", "receding-angle=140,180", f"advancing-angle={advancing}",
                                     "--output", "s.h5")
             self.assertEqual((done.returncode, done.stderr), (2, f"clogsweep: {exchange}{end}"))
-        # The refused key need not be a list itself, and the meant value is no decimal.
+        # The refused key need not be a list itself, and the intended value is not a decimal.
         self.refuse("clogsweep", "model=dp,sp", "vertices=64", "--output", "s.h5",
                     words=["invalid vertices=64",
                            "it meets each value of model; to pair values, see clogsweep --points"])
@@ -108,10 +108,10 @@ class Meant(ProgramTest):
         self.assertNotIn("did you mean", done.stderr)
 
     def test_a_list_that_could_be_a_decimal_is_run_with_a_line_about_it(self):
-        told = "line-tension=0,5 is a list of 0 and 5; decimals have a point, 0.5\n"
+        printed = "line-tension=0,5 is a list of 0 and 5; decimals have a point, 0.5\n"
         sweep = [*SMALL, "line-tension=0,5", "max-time=1", "seeds=1", "--output", "s.h5"]
-        self.assertIn("# " + told, self.succeed("clogsweep", *sweep, "--dry-run").stdout)
-        self.assertEqual(self.succeed("clogsweep", *sweep, ranks=2).stderr.count(told), 1)
+        self.assertIn("# " + printed, self.succeed("clogsweep", *sweep, "--dry-run").stdout)
+        self.assertEqual(self.succeed("clogsweep", *sweep, ranks=2).stderr.count(printed), 1)
 
     def test_a_range_of_numbers_is_pointed_to_lin(self):
         self.refuse("clogsweep", "line-tension=0.1..0.5", "--output", "s.h5", words=["lin(0.1,0.5,5)"])
@@ -132,10 +132,10 @@ class Meant(ProgramTest):
 
 class Failing(ProgramTest):
     def test_a_sweep_whose_every_run_failed_is_no_success(self):
-        for told in ("failed, attempt 2", "nothing left to do"):  # Both texts appear the second time, too.
+        for printed in ("failed, attempt 2", "nothing left to do"):  # Both texts appear the second time, too.
             done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5")
             self.assertEqual(done.returncode, 1, done.stderr)
-            self.assertIn(told, done.stderr)
+            self.assertIn(printed, done.stderr)
             self.assertIn("clogsweep: every run has failed; the first one: cannot release the droplet",
                           done.stderr.splitlines()[-1])
         self.succeed("clogsweep", *BLOCKED, "seeds=51,64", "--output", "f.h5")
@@ -159,10 +159,10 @@ class Parameters(ProgramTest):
 
     def line(self, *settings):
         self.succeed("clogsweep", *settings, "max-time=1", "box=20", "seeds=1", "--output", "s.h5")
-        told = self.succeed("clogfit", "s.h5").stdout
-        self.assertIn(told.splitlines()[0], self.succeed("clogsweep", "status", "s.h5").stdout)
+        printed = self.succeed("clogfit", "s.h5").stdout
+        self.assertIn(printed.splitlines()[0], self.succeed("clogsweep", "status", "s.h5").stdout)
         (self.folder / "s.h5").unlink()
-        return told.split("\n(the rest as by default; --all-parameters names it)\n")[0]
+        return printed.split("\n(the rest as by default; --all-parameters names it)\n")[0]
 
     def test_it_names_what_differs_from_the_defaults(self):
         ours = "box=20 max_time=1"
@@ -186,11 +186,11 @@ class Parameters(ProgramTest):
     def test_all_of_them_can_be_had_in_lines_that_fit(self):
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
         for command in (["clogfit", "s.h5"], ["clogsweep", "status", "s.h5"]):
-            told = self.succeed(*command, "--all-parameters").stdout
+            printed = self.succeed(*command, "--all-parameters").stdout
             for word in ("terminal_speed=0.03", "near_wall_cutoff=0.00614", "clog_detection=certified",
                          "model_version="):
-                self.assertIn(word, told)
-            self.assertLessEqual(max(map(len, told.splitlines())), 110, told)
+                self.assertIn(word, printed)
+            self.assertLessEqual(max(map(len, printed.splitlines())), 110, printed)
 
 
 if __name__ == "__main__":

@@ -31,12 +31,12 @@ class Compared(Analysis):
     def test_ratios_are_those_of_the_lengths_that_clogfit_gives(self):
         self.both_presets()
         groups = pandas.DataFrame(json.loads(self.succeed("clogfit", "both.h5", "--format", "json").stdout)["groups"])
-        told = self.compare("both.h5", "--by", "preset")
-        self.assertEqual(told["columns"], ["line_tension"])
-        self.assertIn("preset", told["differing"])
-        self.assertEqual(len(told["comparisons"]), 2)
+        printed = self.compare("both.h5", "--by", "preset")
+        self.assertEqual(printed["columns"], ["line_tension"])
+        self.assertIn("preset", printed["differing"])
+        self.assertEqual(len(printed["comparisons"]), 2)
         rows = table(self.folder / "both.h5")
-        for one in told["comparisons"]:
+        for one in printed["comparisons"]:
             self.assertEqual((one["here"], one["there"], one["pairs"]), ("preset=robust", "preset=elastic", 6))
             lengths = {group.preset: group for group in groups[groups.line_tension == one["line_tension"]].itertuples()}
             self.assertEqual(one["clogging_length_here"], lengths["robust"].clogging_length)
@@ -63,8 +63,8 @@ class Compared(Analysis):
     def test_files_are_compared_as_values_of_one_file_are(self):
         self.both_presets()
         of_files, of_values = self.compare("elastic.h5", "robust.h5"), self.compare("both.h5", "--by", "preset")
-        for told in (of_files, of_values):
-            for one in told["comparisons"]:
+        for printed in (of_files, of_values):
+            for one in printed["comparisons"]:
                 del one["here"], one["there"]
         self.assertEqual(of_files["comparisons"], of_values["comparisons"])
         self.assertEqual(self.compare("robust.h5", "elastic.h5", "--by", "preset")["comparisons"][0]["there"],
@@ -111,8 +111,8 @@ class Compared(Analysis):
             self.copy_sweep(name, "vertices=64", *(["box=20"] if name == "random.h5" else []), *keys,
                             "line-tension=1,2", "max-time=20", "seeds=1..2")
         self.succeed("clogsweep", "merge", "random.h5", "lattice.h5", "--output", "both.h5")
-        told = json.loads(self.succeed("clogfit", "compare", "both.h5", "--by", "lattice-angle", "--format", "json").stdout)["comparisons"]
-        self.assertEqual({(one["here"], one["there"]) for one in told}, {("lattice_angle=0", "no lattice_angle")})
+        printed = json.loads(self.succeed("clogfit", "compare", "both.h5", "--by", "lattice-angle", "--format", "json").stdout)["comparisons"]
+        self.assertEqual({(one["here"], one["there"]) for one in printed}, {("lattice_angle=0", "no lattice_angle")})
         self.write("own.csv", "distance [mm],clogged,wall\n5,1,glass\n6,0,glass\n7,1,\n8,0,\n")
         self.assertIn("over that of no wall\n", self.succeed("clogfit", "compare", "own.csv", "--by", "wall").stdout)
 

@@ -45,10 +45,10 @@ class Curve(ProgramTest):
 
     def test_it_goes_through_the_points_and_finds_peak_and_crossings(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
-        told = self.curve("--crossing=0.5")
-        self.assertEqual(told["keys"], ["line_tension"])
-        self.assertEqual(told["units"]["clogging_length"], "sigma")
-        curve, = told["curves"]
+        printed = self.curve("--crossing=0.5")
+        self.assertEqual(printed["keys"], ["line_tension"])
+        self.assertEqual(printed["units"]["clogging_length"], "sigma")
+        curve, = printed["curves"]
         self.assertEqual([point["clogs"] for point in curve["points"]], [6] * 5)
         self.assertEqual(len(curve["curve"]), 97)
         for place in curve["curve"]:
@@ -72,10 +72,10 @@ class Curve(ProgramTest):
 
     def test_a_sweep_may_have_the_name_of_a_command(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
-        told = self.succeed("clogfit", "curve", "sweep.h5").stdout
+        printed = self.succeed("clogfit", "curve", "sweep.h5").stdout
         for name in ("curve", "units"):  # a command in Python, and one in C++
             (self.folder / name).write_bytes((self.folder / "sweep.h5").read_bytes())
-            self.assertEqual(self.succeed("clogfit", "curve", f"./{name}").stdout, told)
+            self.assertEqual(self.succeed("clogfit", "curve", f"./{name}").stdout, printed)
 
     def test_text_and_csv_say_the_same(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
@@ -111,8 +111,8 @@ class Curve(ProgramTest):
         self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "terminal-speed=50,100",
                    lengths={0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0})
         self.refuse("clogfit", "curve", "sweep.h5", words=["--key", "line-tension", "terminal-speed"])
-        told = self.curve("--key=line-tension")
-        self.assertEqual([curve["shared"]["terminal_speed"] for curve in told["curves"]], [50, 100])
+        printed = self.curve("--key=line-tension")
+        self.assertEqual([curve["shared"]["terminal_speed"] for curve in printed["curves"]], [50, 100])
         surface, = self.curve("--key=line-tension,terminal-speed")["curves"]
         self.assertEqual(len(surface["curve"]), 25 * 25)
         self.assertEqual(len(surface["points"]), 8)
@@ -135,8 +135,8 @@ class Curve(ProgramTest):
     def test_the_module_gives_and_draws_it(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
         sweep = clogsweep.open(self.folder / "sweep.h5", programs=BIN)
-        told = sweep.fitted_curves("line_tension", crossing=[0.5])
-        self.assertEqual(len(told["curves"][0]["crossings"]), 2)
+        printed = sweep.fitted_curves("line_tension", crossing=[0.5])
+        self.assertEqual(len(printed["curves"][0]["crossings"]), 2)
         axes = sweep.fit().curve().figure.axes[0]
         fitted, = (line for line in axes.lines if line.get_label().startswith("_fitted"))
         self.assertEqual(len(fitted.get_xdata()), 97)
@@ -183,7 +183,7 @@ class Curve(ProgramTest):
                           lengths=tensions)
         self.assertEqual([curve["shared"] for curve in self.curve("--key=line-tension")["curves"]],
                          [{"obstacle_gap": 0.3}, {"obstacle_gap": 0.4}])
-        # Densities that are the same for all gaps are no shares.
+        # Densities that are equal for all gaps are not shares.
         rows = self.sweep("line-tension=1", *FAR, gaps, "obstacle-density=0.1,0.2", lengths=one_length)
         self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]],
                          [{"obstacle_density": 0.1}, {"obstacle_density": 0.2}])
@@ -209,10 +209,10 @@ class Curve(ProgramTest):
         for tensions in ("<=0.1", ">0.1"):
             names.append(f"part{len(names)}.h5")
             self.succeed("clogsweep", "select", "sweep.h5", f"line_tension{tensions}", "--output", names[-1])
-        told = json.loads(self.succeed("clogfit", "curve", *names, "--format", "json").stdout)
-        # The last digits are left out, because they may depend on the number of BLAS threads.
+        printed = json.loads(self.succeed("clogfit", "curve", *names, "--format", "json").stdout)
+        # The last digits are excluded, because they may depend on the number of BLAS threads.
         one, other = (json.loads(json.dumps(curves), parse_float=lambda number: float(f"{float(number):.8g}"))
-                      for curves in (told["curves"], whole))
+                      for curves in (printed["curves"], whole))
         self.assertEqual(one, other)
         self.refuse("clogfit", "curve", "sweep.h5", "no.h5", words=["no.h5"])
 

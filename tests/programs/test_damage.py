@@ -66,7 +66,7 @@ class Damage(ProgramTest):
         self.assertIn("row 1 (task 1) is not as it was written\ns.h5: 5 undamaged rows, 1 fault\n", verified.stdout)
         with self.assertRaises(stored.Damaged):
             stored.read_rows(self.file)
-        # Readers that do not know our checksums are protected by HDF5's own checksum of the table's chunks.
+        # HDF5's own checksum of the table's chunks protects readers that do not know our checksums.
         with self.assertRaises(OSError), h5py.File(self.file) as file:
             file["runs"][:]
         with pandas.HDFStore(self.file, "r") as store, self.assertRaisesRegex(Exception, "read"):
@@ -159,24 +159,24 @@ class Damage(ProgramTest):
         self.refuse("clogsweep", *[word.replace("=60", "=70") for word in SETTINGS[:-1]], "whole.h5",
                     words=["other settings: max-time=70 (file: 60)"])
 
-    def told_once(self, words, *command):
+    def prints_once(self, words, *command):
         self.assertEqual(self.succeed(*command).stderr.count(words), 1, command)
 
     def test_a_journal_that_cannot_be_read_is_named(self):
         self.write("s.h5.journal", "a journal of another version")
         for command in (["clogfit", "s.h5"], ["clogsweep", "replay", "s.h5", 0], ["clogsweep", "status", "s.h5"]):
-            self.told_once("s.h5: runs that only its journal has are missing here: cannot read ", *command)
+            self.prints_once("s.h5: runs that only its journal has are missing here: cannot read ", *command)
 
     def test_settings_of_another_version_are_named(self):
         shutil.copyfile(self.file, self.folder / "other.h5")
         stored_rows.change_attribute(self.file, "config", "viscosity = 3\n")
-        self.told_once("the lists of the stored settings are unknown here: unknown key", "clogfit", "s.h5", "--format", "json")
-        self.told_once("s.h5, other.h5: read together without their settings: cannot read s.h5 (its attribute config: ", "clogfit", "s.h5", "other.h5")
+        self.prints_once("the lists of the stored settings are unknown here: unknown key", "clogfit", "s.h5", "--format", "json")
+        self.prints_once("s.h5, other.h5: read together without their settings: cannot read s.h5 (its attribute config: ", "clogfit", "s.h5", "other.h5")
 
     def test_rows_that_no_settings_describe_are_counted(self):
         stored_rows.change_columns(self.file, preset=b"viscous")
         stored_rows.change_attribute(self.file, "config", "line-tension = 3\n")
-        self.told_once("s.h5: no settings of this version describe 6 runs; the rows are kept\n", "clogsweep", "select", "s.h5", "seed>=1", "--output", "part.h5")
+        self.prints_once("s.h5: no settings of this version describe 6 runs; the rows are kept\n", "clogsweep", "select", "s.h5", "seed>=1", "--output", "part.h5")
         self.assertEqual(len(table(self.folder / "part.h5")), 6)
 
     def test_copies_by_other_programs_are_read_with_a_warning(self):
@@ -279,7 +279,7 @@ class Damage(ProgramTest):
         if not may_limit_memory():
             self.skipTest("programs with sanitizers map more memory than any machine has")
         sweep = [*SETTINGS[:-1], "new.h5"]
-        told = []
+        printed = []
 
         def run_with(size, name, arguments):
             return subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
@@ -297,9 +297,9 @@ class Damage(ProgramTest):
                     # The code is 127 if the libraries do not fit into memory.
                     self.assertIn(done.returncode, (0, 2, 127), done.stderr)
                     self.assertNotIn("damaged", done.stderr)
-                told.append((done.returncode, "out of memory" in done.stderr))
-        self.assertIn((2, True), told)
-        self.assertIn((0, False), told)
+                printed.append((done.returncode, "out of memory" in done.stderr))
+        self.assertIn((2, True), printed)
+        self.assertIn((0, False), printed)
 
     def test_copies_of_h5repack_are_read(self):
         subprocess.run(["h5repack", "-f", "GZIP=6", self.file, self.folder / "packed.h5"], check=True)
@@ -348,7 +348,7 @@ class Damage(ProgramTest):
         for version in ("4", "8", "99"):
             stored_rows.make_older(self.file, version)
             before = self.file.read_bytes()
-            line = f"(format version {version}, this program reads 9 to 11); use the program that wrote it, or compute the rows anew"
+            line = f"(format version {version}, this program reads 9 to 12); use the program that wrote it, or compute the rows anew"
             for name, *arguments in [*READERS, ("clogsweep", "verify", "s.h5")]:
                 self.refuse(name, *arguments, words=["s.h5", line])
             with self.assertRaisesRegex(clogsweep.UserError, re.escape(line)):

@@ -1,4 +1,4 @@
-"""Tests devices of a user: files of circles in any form, walls, entrance and exit, drawings of devices, and pictures of
+"""Tests devices of users: files of circles in any form, walls, entrance and exit, drawings of devices, and pictures of
 devices."""
 
 import contextlib
@@ -155,9 +155,9 @@ class Devices(Walls):
         self.write("lab.cfg", "diameter = 0.2 mm\nangle = 90 deg\ntension = 0.1 mN/m\nspeed = 1 mm/s\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=posts.csv", "box=6", "length=18", "max-time=20",
                      "seeds=1", "--output", "s.h5")
-        told = self.succeed("clogfit", "s.h5")
-        self.assertIn("tension/(mN/m)", told.stdout)
-        self.assertEqual(told.stderr, "")
+        printed = self.succeed("clogfit", "s.h5")
+        self.assertIn("tension/(mN/m)", printed.stdout)
+        self.assertEqual(printed.stderr, "")
         self.write("other.cfg", "diameter = 0.2 mm\nangle = 45 deg\n")
         self.assertIn("other.cfg replaces the laboratory stored with the rows",
                       self.succeed("clogfit", "s.h5", "--lab", "other.cfg").stderr)
@@ -168,9 +168,9 @@ class Devices(Walls):
         self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=8",
                      "entrance-from=4.9", "entrance-to=5.1", "line-tension=1", "vertices=64", "max-time=1500",
                      "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "s.h5")
-        told = self.succeed("clogfit", "s.h5").stdout
-        self.assertRegex(told, r"1 run ended by max-time with the droplet at rest for 1[34]\d\d t0 or longer: "
-                               r"--dwell=1000 counts it as clogged")
+        printed = self.succeed("clogfit", "s.h5").stdout
+        self.assertRegex(printed, r"1 run ended by max-time with the droplet at rest for 1[34]\d\d t0 or longer: "
+                         r"--dwell=1000 counts it as clogged")
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
         self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
@@ -191,9 +191,9 @@ class Devices(Walls):
         self.assertEqual([table(self.folder / f"{name}.h5")["status"][0] for name in ("passed", "rests")],
                          ["passed", "flowing"])
         for name in ("passed", "rests"):
-            told = self.succeed("clogfit", f"{name}.h5").stdout
-            self.assertNotIn("reached the exit", told)
-            self.assertNotIn("at rest", told)
+            printed = self.succeed("clogfit", f"{name}.h5").stdout
+            self.assertNotIn("reached the exit", printed)
+            self.assertNotIn("at rest", printed)
 
     def test_droplets_enter_pass_and_leave_between_walls(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
@@ -238,7 +238,7 @@ class Devices(Walls):
         for command, output in [("device", "device"), ("report", "report.html")]:
             self.draw(command, "s.h5", "--output", output, "--programs", BIN)
         self.assertTrue("2 of 2 runs finished (2 passed)" in (self.folder / "report.html").read_text())
-        # The file is merged with groups whose droplets do pass.
+        # The file is merged with groups in which droplets do pass.
         self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance",
                      "entrance-from=4.5", "entrance-to=5.5", "exit=6", "line-tension=1", "vertices=64", "max-time=500",
                      "seeds=1..2", "--output", "t.h5")
@@ -266,9 +266,9 @@ class Devices(Walls):
                          [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 2, 3, 4, 5)])
         for part in place.parts(groups):
             self.assertEqual([rf"$\Gamma = {row['line_tension']:g}$" for row in part.place.rows], [part.label])
-        with contextlib.redirect_stderr(io.StringIO()) as told:
+        with contextlib.redirect_stderr(io.StringIO()) as printed:
             figure = sweep.device(ways=1, map=0).figure
-        self.assertIn("posts.csv: 6 of 7 parameter sets are drawn; clogsweep select", told.getvalue())
+        self.assertIn("posts.csv: 6 of 7 parameter sets are drawn; clogsweep select", printed.getvalue())
         panels = [axes.get_ylabel() for axes in figure.axes]
         self.assertEqual([label.split("\n")[0] for label in panels],
                          [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 3, 4, 5)] + ["share that"])
@@ -345,9 +345,9 @@ class Devices(Walls):
         for group in json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines",
                                              "5,12").stdout)["groups"]:
             self.assertEqual([passage["x"] for passage in group["passages"]], [5, 12])
-        told = self.succeed("clogfit", "s.h5").stdout
+        printed = self.succeed("clogfit", "s.h5").stdout
         self.assertIn(f"{sum(group['displaced'] for group in groups)} droplets were released in the nearest "
-                      "void, from x = ", told)
+                      "void, from x = ", printed)
         self.assertNotIn("nearest void", self.succeed("clogfit", self.rows_path("none")).stdout)
 
     def rows_path(self, name):
@@ -367,7 +367,7 @@ class Devices(Walls):
         panels, strip = figure.axes[:3], figure.axes[3]
         self.assertEqual([axes.get_ylabel() for axes in panels],
                          [f"diameter {mm:g} mm\n$y$ [mm]" for mm in (0.24, 0.2, 0.16)])
-        self.assertEqual(strip.get_xlabel(), "$x$ [mm], along the flow")
+        self.assertEqual(strip.get_xlabel(), "$x$ [mm], along gravity")
         self.assertIn("posts.csv: 2.8 x 1.6 mm", figure.texts[0].get_text())
         posts_drawn = [axes.collections[0].get_paths()[3].get_extents() for axes in panels]
         for extents in posts_drawn:
@@ -388,7 +388,7 @@ class Devices(Walls):
         np.testing.assert_allclose(exported["diameter_mm [mm]"] * exported["length [sigma]"], 2.8, rtol=1e-9)
         self.assertEqual((set(exported["angle_degrees [degrees]"]), exported["distance [sigma]"].tolist()),
                          ({90}, rows["distance"].tolist()))
-        # Other devices are no device of several sizes.
+        # Another device does not become a device of several sizes.
         self.write("other.csv", "# units=um droplet=200um\nx,y,diameter\n700,500,100\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=other.csv", *keys[1:], "seeds=1", "--output", "other.h5")
         self.succeed("clogsweep", "merge", "s.h5", "other.h5", "--output", "both.h5")
@@ -604,7 +604,8 @@ class Drawings(Analysis):
     def test_holes_that_were_cut_into_pieces_are_counted_as_at_least(self):
         import gdspy
 
-        # Two pieces, whose border cuts the third of five holes. With a gap between them, they are not united.
+        # There are two pieces, and their border cuts the third of five holes. With a gap between them, the pieces are
+        # not united.
         holes = [gdspy.Round((400 + 500 * i, 600), 50, number_of_points=64) for i in range(5)]
         for gap, number in ((1, "at least 4"), (0, "5")):
             pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (left + 1400 - gap, 1200)), holes, "not", max_points=10000)
@@ -734,10 +735,10 @@ class Drawings(Analysis):
             along = np.array([end_x - x, end_y - y])
             off = np.abs(along[0] * (triangle[:, 1] - y) - along[1] * (triangle[:, 0] - x)) / np.hypot(*along)
             self.assertAlmostEqual(off.min(), radius, delta=1e-4)
-        told = self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "side-walls=on",
-                            "release=entrance", "entrance=8", "exit=13", "line-tension=1", "max-time=300", "seeds=1..4",
-                            "--output", "s.h5")
-        self.assertEqual(set(table(self.folder / "s.h5")["status"]), {"passed"}, told.stderr)
+        printed = self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "side-walls=on",
+                               "release=entrance", "entrance=8", "exit=13", "line-tension=1", "max-time=300",
+                               "seeds=1..4", "--output", "s.h5")
+        self.assertEqual(set(table(self.folder / "s.h5")["status"]), {"passed"}, printed.stderr)
         for name in ("posts.csv", "posts.png", "posts.pdf"):
             (self.folder / name).unlink()
         rows = self.circles("device.svg", "--as-circles")
@@ -760,7 +761,7 @@ class Drawings(Analysis):
 
 
 class WrongDrawings(Analysis):
-    """Tests drawings whose content the user may not have intended."""
+    """Tests drawings with content that the user may not have intended."""
 
     COMMAND = ["--droplet", "200um", "--output", "posts"]
 
@@ -803,8 +804,8 @@ class WrongDrawings(Analysis):
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', ""))
         self.refuse_analysis("circles", "device.svg", "--droplet", "10mm", "--output", "other", "--unit", "um", words=["unit is um"])
         self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["how long its unit is", "--unit, such as", "--pixel 0.2645833mm", "Inkscape before 0.92 had 90, --pixel 0.2822222mm"])
-        told = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "old", "--pixel", "0.2822222mm").stdout
-        self.assertIn("1 unit is 282.222 um", told)  # 25.4 mm / 90
+        printed = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "old", "--pixel", "0.2822222mm").stdout
+        self.assertIn("1 unit is 282.222 um", printed)  # 25.4 mm / 90
 
     def test_a_unit_other_than_the_drawing_states(self):
         self.dxf(circles=[(800, 300), (1600, 300)], outlines=[box(0, 0, 3600, 1200)])
@@ -823,65 +824,65 @@ class WrongDrawings(Analysis):
         triangles = [[(x, 400), (x + 150, 400 + 1e-4), (x + 75, 550)] for x in (600, 1200, 1800)]
         lines = [side for corners in [box(0, 0, 3600, 1200), *triangles] for side in sides(corners)]
         loose = [((2500, 300), (2900, 700))]
-        told = self.said_of("posts", "--as-rows", lines=lines + loose)
+        printed = self.said_of("posts", "--as-rows", lines=lines + loose)
         for words in ("3 posts, device 18 x 6", "13 lines closed into 4 outlines", "skipped: 1 LINE (lines red",
                       "draw closed outlines", "side-walls=on"):
-            self.assertIn(words, told)
+            self.assertIn(words, printed)
         self.assertGreater(self.red().sum(), 100)
         crossing = [((500, 450), (2000, 450)), ((2300, 400), (2800, 400)), ((2350, 350), (2600, 900)),
                     ((2750, 350), (2500, 900))]
-        told = self.said_of("crossing", "--as-rows", lines=lines + lines[-3:] + crossing)
+        printed = self.said_of("crossing", "--as-rows", lines=lines + lines[-3:] + crossing)
         for words in ("4 posts, device 18 x 6", "19 lines closed into 5 outlines", "skipped: 1 LINE"):
-            self.assertIn(words, told)
-        told = self.said_of("open", circles=[(800, 300), (1600, 300)], lines=sides(triangles[0])[:2])
-        self.assertIn("skipped: 2 LINE", told)
+            self.assertIn(words, printed)
+        printed = self.said_of("open", circles=[(800, 300), (1600, 300)], lines=sides(triangles[0])[:2])
+        self.assertIn("skipped: 2 LINE", printed)
         with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
-            told = self.said_of("other", circles=[(800, 300), (1600, 300)], lines=lines)
+            printed = self.said_of("other", circles=[(800, 300), (1600, 300)], lines=lines)
         # The lines are parts of the device's edge.
-        self.assertIn("2 outlines or lines extend along the whole device and are taken for walls", told)
-        self.assertIn("skipped: 11 LINE", told)
-        self.assertIn("install python3-shapely", told)
+        self.assertIn("2 outlines or lines extend along the whole device and are taken for walls", printed)
+        self.assertIn("skipped: 11 LINE", printed)
+        self.assertIn("install python3-shapely", printed)
 
     def red(self):
         """The red pixels of the picture."""
         pixels = image.imread(self.folder / "posts.png")
         return (pixels[..., 0] > 0.7) & (pixels[..., 1:3] < 0.5).all(axis=2)
 
-    def run_printed(self, told, *keys):
+    def run_printed(self, printed, *keys):
         """Runs the command that `circles` prints."""
-        begin = told.strip().splitlines()[-1].removesuffix(" ...").split()
+        begin = printed.strip().splitlines()[-1].removesuffix(" ...").split()
         self.succeed(*begin, "line-tension=1", "vertices=64", "max-time=5", "seeds=1..2", *keys, "--output", "s.h5")
         return begin
 
     def test_without_an_edge_there_is_room_around_the_posts(self):
-        told = self.said_of("posts", circles=[(800, 300), (1600, 300), (1200, 900)])
+        printed = self.said_of("posts", circles=[(800, 300), (1600, 300), (1200, 900)])
         self.assertIn("no edge is drawn: the device ends half a droplet diameter beyond the posts on every side; "
-                      "leave out side-walls=on", told)
-        self.assertNotIn("to a side", told)
-        self.assertIn("box=4.5", self.run_printed(told))
-        self.assertIn("length=5.5", told)
+                      "leave out side-walls=on", printed)
+        self.assertNotIn("to a side", printed)
+        self.assertIn("box=4.5", self.run_printed(printed))
+        self.assertIn("length=5.5", printed)
         np.testing.assert_allclose(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)[0], (150, 150, 100))
 
     def test_walls_drawn_as_outlines_are_no_posts(self):
         walls, post = [box(0, -20, 3600, 0), box(0, 1200, 3600, 1220)], box(1500, 500, 1600, 600)
-        told = self.said_of("posts", "--as-rows", circles=[(800, 300), (800, 900)], outlines=[*walls, post])
-        self.assertIn("2 outlines or lines extend along the whole device and are taken for walls: side-walls=on", told)
-        self.assertIn("3 posts, device 18 x 6 droplet diameters (between its walls)", told)
-        self.assertNotIn("no edge is drawn", told)
-        self.assertIn(", to a side 1.25 (250 um), in droplet diameters", told)
-        self.assertIn("side-walls=on", self.run_printed(told))
-        told = self.said_of("one", circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
-        self.assertIn("1 outline or line extends along the whole device and is taken for a wall", told)
-        self.assertIn("box=6 length=18", told)
-        told = self.said_of("down", "--flow", "down", circles=[(300, 800), (900, 800)],
-                            outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
-        self.assertIn("box=5.95 length=18", told)
+        printed = self.said_of("posts", "--as-rows", circles=[(800, 300), (800, 900)], outlines=[*walls, post])
+        self.assertIn("2 outlines or lines extend along the whole device and are taken for walls: side-walls=on", printed)
+        self.assertIn("3 posts, device 18 x 6 droplet diameters (between its walls)", printed)
+        self.assertNotIn("no edge is drawn", printed)
+        self.assertIn(", to a side 1.25 (250 um), in droplet diameters", printed)
+        self.assertIn("side-walls=on", self.run_printed(printed))
+        printed = self.said_of("one", circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
+        self.assertIn("1 outline or line extends along the whole device and is taken for a wall", printed)
+        self.assertIn("box=6 length=18", printed)
+        printed = self.said_of("down", "--flow", "down", circles=[(300, 800), (900, 800)],
+                               outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
+        self.assertIn("box=5.95 length=18", printed)
         with self.subTest("walls are single lines"):
             sides = [((0, 0), (3600, 0)), ((3600, 1200), (0, 1200))]
-            told = self.said_of("lines", circles=[(800, 300), (800, 900)], lines=[*sides, ((2500, 300), (2900, 700))])
+            printed = self.said_of("lines", circles=[(800, 300), (800, 900)], lines=[*sides, ((2500, 300), (2900, 700))])
             for words in ("2 outlines or lines extend along the whole device and are taken for walls",
                           "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
-                self.assertIn(words, told)
+                self.assertIn(words, printed)
 
         posts, edge = [(800, 300), (800, 900)], box(0, 0, 3600, 1200)
         with self.subTest("a dimension line beside the device moves no edge"):
@@ -891,20 +892,20 @@ class WrongDrawings(Analysis):
                           self.said_of("farther", circles=posts, lines=[*sides, ((-300, -900), (3900, -900))]))
         with self.subTest("of walls that are double lines the inner faces count"):
             double = [((0, -20), (3600, -20)), ((0, 1220), (3600, 1220))]
-            told = self.said_of("double", circles=posts, lines=[*sides, *double])
-            self.assertIn("device 18 x 6", told)
-            self.assertNotIn("skipped", told)
+            printed = self.said_of("double", circles=posts, lines=[*sides, *double])
+            self.assertIn("device 18 x 6", printed)
+            self.assertNotIn("skipped", printed)
         with self.subTest("a long outline that is the only post is none"):
-            told = self.said_of("only", "--as-rows", outlines=[box(0, 500, 3600, 520)],
-                                lines=[((500, 800), (600, 900))])
-            self.assertIn("1 post, device", told)
+            printed = self.said_of("only", "--as-rows", outlines=[box(0, 500, 3600, 520)],
+                                   lines=[((500, 800), (600, 900))])
+            self.assertIn("1 post, device", printed)
         with self.subTest("a wall with teeth is a post"):
             teeth = [(3600 - 100 * i, 20 + 40 * (i % 2)) for i in range(37)]
-            told = self.said_of("teeth", "--as-rows", circles=[(800, 300), (800, 900)],
-                                outlines=[[(0, 0), (3600, 0), *teeth],
-                                          box(0, 1200, 3600, 1220)])
-            self.assertIn("1 outline or line extends along the whole device", told)
-            self.assertIn("3 posts", told)
+            printed = self.said_of("teeth", "--as-rows", circles=[(800, 300), (800, 900)],
+                                   outlines=[[(0, 0), (3600, 0), *teeth],
+                                             box(0, 1200, 3600, 1220)])
+            self.assertIn("1 outline or line extends along the whole device", printed)
+            self.assertIn("3 posts", printed)
 
     def test_the_package_that_rows_need_is_named(self):
         self.dxf(outlines=[box(0, 0, 3600, 1200), box(500, 500, 600, 600)])
@@ -966,11 +967,11 @@ class OtherTools(Analysis):
         return circles[np.lexsort(np.round(circles[:, 1::-1].T, 2))]
 
     def refused(self, name, *words, **options):
-        with self.assertRaises(UserError) as told:
+        with self.assertRaises(UserError) as printed:
             self.device(name, **options)
-        self.assertEqual(len(str(told.exception).splitlines()), 1)
+        self.assertEqual(len(str(printed.exception).splitlines()), 1)
         for word in words:
-            self.assertIn(word, str(told.exception))
+            self.assertIn(word, str(printed.exception))
 
     def dxf(self, unit=13):
         import ezdxf
@@ -1266,7 +1267,7 @@ class OtherTools(Analysis):
                                         70), (f'width="100%" height="100%" {view.format(500, 200)}', 500, 200)):
             for has_frame in (True, False):
                 seen = [(left + x, top + y) for x, y in ((800, 300), (1600, 900), (2400, 600))]
-                # Beyond each side and corner; an edge that only touches the page is outside, too.
+                # Shapes beyond each side and corner. An edge that only touches the page is outside, too.
                 for places in ([(3651, 600)], [(-51, 600)], [(800, 1300), (900, 2000)], [(800, -50)], [(3700, 1300), (4500, 1400), (-700, -900)], [(3640, -40)]):
                     beyond = [(left + x, top + y) for x, y in places]
                     self.write("device.svg", f'<svg xmlns="http://www.w3.org/2000/svg" {page}>' + frame.format(left, top) * has_frame + "".join(posts.format(*place) for place in [*beyond, *seen]) + "</svg>")
@@ -1282,10 +1283,10 @@ class OtherTools(Analysis):
         self.write("device.svg", SVG.replace('<rect x="0" y="0" width="3600" height="1200" fill="none" '
                                              'stroke="black"/>', "").format(posts.format(5000, 600)))
         self.refused("device.svg", "holds no posts", "1 object wholly outside the page", "x=4950 to 5050")
-        told = self.write("device.svg", SVG.format(posts.format(800, 600) + posts.format(5000, 600))) and self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout
+        printed = self.write("device.svg", SVG.format(posts.format(800, 600) + posts.format(5000, 600))) and self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout
         self.assertIn("read 3 objects; 1 object wholly outside the page left out, at x=4950 to 5050, "
-                      "y=550 to 650", told)
-        self.assertIn("device 18 x 6 droplet diameters (its own edge)", told)
+                      "y=550 to 650", printed)
+        self.assertIn("device 18 x 6 droplet diameters (its own edge)", printed)
         # A drawing without a size and without a viewBox has no page.
         self.write("device.svg",
                    f'<svg xmlns="http://www.w3.org/2000/svg">{posts.format(800, 300)}{posts.format(9000, -700)}</svg>')
@@ -1304,7 +1305,7 @@ class OtherTools(Analysis):
         # Without an edge, the device begins half a droplet, 100, beyond the posts.
         np.testing.assert_allclose(self.circles_of("device.svg"), [(150, 730, 100), (1730, 150, 100), (2530, 730, 100)], atol=0.2)
         self.assertEqual(self.drawing.notes, ["3 posts left out that reach into the page from outside"])
-        # The same posts in a larger drawing, of which a region is read. Its edge is that of the region.
+        # The same posts in a larger drawing, of which a region is read. The edge of the region is the device's.
         self.write("device.svg", whole.replace('0 0 3600 1200', '-1000 -1000 7200 2400').replace("3.6mm", "7.2mm").replace("1.2mm", "2.4mm").format(posts))
         np.testing.assert_allclose(self.circles_of("device.svg", region=(0, 0, 3600, 1200)), [(20, 600, 100), (1600, 20, 100), (2400, 600, 100)], atol=0.2)
         # A background that is larger than the page is seen as the page, and a bar is cut.
@@ -1328,9 +1329,9 @@ class OtherTools(Analysis):
                 self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes")
                 rows = np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)
                 np.testing.assert_allclose(rows[np.lexsort((rows[:, 1], rows[:, 0]))], expected, rtol=1e-3)
-                # Without --holes, outlines within the outline are posts, as before.
+                # Without --holes, outlines within the outline are still posts.
                 np.testing.assert_allclose(self.circles_of("device.svg"), expected, rtol=1e-3)
-        # Boundaries that turn alike leave no hole, and neither does a path that is not filled.
+        # Boundaries with the same direction leave no hole. Neither does a path that is not filled.
         (self.folder / "posts.csv").unlink()
         for sweep, paint in ((1, ""), (0, 'fill="none" stroke="black"')):
             self.write("device.svg", page.format(f'<path {paint} d="{edge}{turned(4, 3, sweep)}"/>'))
@@ -1344,9 +1345,9 @@ class OtherTools(Analysis):
     def test_svg_strokes_are_not_counted_and_that_is_said(self):
         post = '<g transform="scale(2)"><circle cx="400" cy="150" r="25" stroke="black" stroke-width="5"/></g><path d="M 900 600 h 0" stroke="black" stroke-width="100" stroke-linecap="round"/>'
         np.testing.assert_allclose(self.svg(post), [(800, 900, 100)], rtol=1e-3)
-        told = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout
-        self.assertIn("strokes not counted (of filled shapes at most 10 wide)", told)
-        self.assertIn("skipped: 1 dot", told)
+        printed = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout
+        self.assertIn("strokes not counted (of filled shapes at most 10 wide)", printed)
+        self.assertIn("skipped: 1 dot", printed)
         self.write("device.svg", SVG.format('<circle cx="500" cy="500" r="50"/>'))
         self.assertNotIn("dot", self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout)
 
@@ -1496,9 +1497,9 @@ class OtherTools(Analysis):
         self.assertGreater(len(readers.read(self.folder / "device.gds").outlines), 10)
         np.testing.assert_allclose(self.circles_of("device.gds"), [(500, 580, 100), (800, 580, 100)], atol=0.02)
         self.assertEqual((self.drawing.united[1], self.drawing.duplicates), (2, 1))
-        told = self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts").stdout
-        self.assertRegex(told, r"read \d+ objects; \d+ outlines that touch united into 2 outlines; "
-                               r"1 duplicate ignored; 1 unit is 1 um, 0.005 droplet diameters")
+        printed = self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts").stdout
+        self.assertRegex(printed, r"read \d+ objects; \d+ outlines that touch united into 2 outlines; "
+                         r"1 duplicate ignored; 1 unit is 1 um, 0.005 droplet diameters")
         third = [(500 + 50 * np.cos(angle), 600 + 50 * np.sin(angle)) for angle in np.linspace(0, 2 * np.pi / 3, 41)]
         turned = [[((x - 500) * c - (y - 600) * s + 500, (x - 500) * s + (y - 600) * c + 600)
                    for x, y in [(500, 600), *third]]
@@ -1577,10 +1578,10 @@ class OtherTools(Analysis):
         device = self.saved(drawing, region=(500, 1200, 2000, 0))
         np.testing.assert_allclose(device, [(300, 50, 100), (500, 40, 100), (1100, 650, 100)], atol=1e-9)
         self.assertEqual(self.drawing.outside, 4)
-        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "posts", "--region",
-                         "500,1200,2000,0").stdout
-        self.assertIn("device 7.5 x 3.5 droplet diameters (the region)", told)
-        self.assertIn("4 outside the region", told)
+        printed = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "posts", "--region",
+                            "500,1200,2000,0").stdout
+        self.assertIn("device 7.5 x 3.5 droplet diameters (the region)", printed)
+        self.assertIn("4 outside the region", printed)
         self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "500,0,500,9",
                              words=["--region", "x0,y0,x1,y1"])
         self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region",
@@ -1589,11 +1590,11 @@ class OtherTools(Analysis):
     def test_a_post_beside_the_edge_of_a_region_is_left_out_and_named(self):
         # Two posts reach into the region of 500..2000, from the left and from above.
         self.write("device.svg", SVG.format("".join(f'<circle cx="{x}" cy="{y}" r="50"/>' for x, y in ((480, 600), (800, 600), (1200, 380), (1300, 800), (1990, 700)))))
-        told = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--region", "500,400,2000,1000").stdout
-        self.assertIn("2 posts left out that reach into the region from outside", told)
-        self.assertIn("3 posts, device 7.5 x 3 droplet diameters (the region)", told)
-        self.assertIn("the border is no wall", told)
-        self.assertTrue(told.endswith("box=3 length=7.5 release=entrance entrance=1 exit=6.5 ...\n"), told)
+        printed = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--region", "500,400,2000,1000").stdout
+        self.assertIn("2 posts left out that reach into the region from outside", printed)
+        self.assertIn("3 posts, device 7.5 x 3 droplet diameters (the region)", printed)
+        self.assertIn("the border is no wall", printed)
+        self.assertTrue(printed.endswith("box=3 length=7.5 release=entrance entrance=1 exit=6.5 ...\n"), printed)
 
     def test_the_printed_command_has_walls_only_where_the_drawing_has_an_edge(self):
         image = Image.new("L", (1800, 600), 230)
@@ -1604,18 +1605,18 @@ class OtherTools(Analysis):
         self.write("device.svg",
                    SVG.format("".join(f'<circle cx="{200 * x}" cy="{1200 - 200 * y}" r="50"/>' for x, y in ROW)))
         for drawing, options, walls in (("mask.png", ["--pixel", "2um"], ""), ("device.svg", [], "side-walls=on ")):
-            told = self.draw("circles", drawing, "--droplet", "200um", "--output", "posts", *options).stdout
-            self.assertIn(f"box=6 length=18 {walls}release=entrance entrance=1 exit=17 ...", told)
+            printed = self.draw("circles", drawing, "--droplet", "200um", "--output", "posts", *options).stdout
+            self.assertIn(f"box=6 length=18 {walls}release=entrance entrance=1 exit=17 ...", printed)
         pen.rectangle([1400, 560, 1700, 570], fill=40)  # a scale bar
         image.save(self.folder / "bar.png")
         self.refuse_analysis("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "cut",
                              words=["not round", "cut scale bars", "--region"])
-        # Whoever follows the message gets the bar as a post, and is told where.
-        told = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred",
-                         "--as-circles").stdout
-        self.assertIn(f"{len(ROW) + 1} posts, device", told)
+        # If users follow the message, the bar becomes a post, and a message says so.
+        printed = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred",
+                            "--as-circles").stdout
+        self.assertIn(f"{len(ROW) + 1} posts, device", printed)
         x, y = map(float, re.search(r"1 post is at least three times as long as wide, at x=([0-9.]+) um, "
-                                    r"y=([0-9.]+) um; if this is a scale bar", told).groups())
+                                    r"y=([0-9.]+) um; if this is a scale bar", printed).groups())
         np.testing.assert_allclose((x, y), (3100, 70), atol=20)
 
     def test_a_region_is_given_as_the_program_shows_it(self):
@@ -1657,11 +1658,11 @@ class OtherTools(Analysis):
         # Less than half of the third post is in the picture, and more than half of the fourth; the fifth is beyond the upper border.
         self.picture("L", 255, 0, "mask.png", extra=[(-12, 100), (885, 200), (400, -10)])
         np.testing.assert_allclose(self.circles_of("mask.png", unit=1e-6), [(200.5, 149.5, 61), (600.5, 149.5, 61), (885.5, 99.5, 61)], atol=1)
-        told = self.draw("circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts").stdout
-        self.assertIn("2 posts left out that reach into the picture from outside", told)
-        self.assertIn("3 posts, device 9 x 3 droplet diameters", told)
+        printed = self.draw("circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts").stdout
+        self.assertIn("2 posts left out that reach into the picture from outside", printed)
+        self.assertIn("3 posts, device 9 x 3 droplet diameters", printed)
         self.assertEqual(len(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)), 3)
-        # Where the user drew an edge, a post with its centre on the edge remains an error.
+        # If the user drew an edge, a post with its centre on the edge is still an error.
         drawing, space = self.dxf()
         for x, y in ((800, 300), (1600, 1200)):
             space.add_circle((x, y), 50)

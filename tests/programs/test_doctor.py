@@ -71,7 +71,7 @@ class Doctor(ProgramTest):
     def test_a_single_rank_of_mpirun_in_a_larger_allocation_is_accepted(self):
         self.assertEqual(self.faults(self.examine(ranks=1, SLURM_NTASKS="8")), {})
 
-    def test_root_in_a_container_is_told(self):
+    def test_root_in_a_container_gets_a_message(self):
         done = self.examine()
         if os.geteuid() == 0 and MPI == "Open MPI":
             self.assertIn("jobs/mpi-settings.sh", self.fault(done, "refuses to start more as root"))

@@ -92,8 +92,8 @@ BRIEF = [word.replace("max-time=2e4", "max-time=5e3") for word in SLOW]
 
 
 class Places(SweepTest):
-    """Tests that a path is resolved only once. If other users change the path later, neither their files nor any row is
-    affected."""
+    """Tests that a path is resolved only once. If other users change the path later, this affects neither their files
+    nor any row."""
 
     def begin(self, sweep, output):
         """Starts a sweep. Waits until the sweep has written its table."""
@@ -269,7 +269,7 @@ int unlinkat(int folder, const char* name, int flags) {
 
 
 class Refusals(SweepTest):
-    """Tests a file system that fails after it has stored the rows."""
+    """Tests a file system that stores the rows and then fails."""
 
     def where(self, fails, **more):
         """The environment in which these system calls of a program fail."""

@@ -1,7 +1,7 @@
-"""Tests that every reader counts failed runs up to their last sound check, or states the number of failed runs.
+"""Tests that every reader counts failed runs up to their last sound check, or prints the number of failed runs.
 
-The tests write failures into the rows of sound sweeps. What a failed droplet did after its last sound check must not
-matter, so `distance` is absurd in these rows.
+The tests write failures into the rows of sound sweeps. The course of a failed droplet after its last sound check must
+have no effect, so `distance` is absurd in these rows.
 """
 
 import contextlib
@@ -41,7 +41,7 @@ def without_result(rows, which):
 
 class Readers(Analysis):
     def setUp(self):
-        """Makes a sweep of which at every line tension three droplets fail, two are interrupted, and seven clog."""
+        """Makes a sweep. At every line tension three droplets fail, two are interrupted, and seven clog."""
         super().setUp()
         self.copy_sweep("s.h5", *SWEEP)
         stored_rows.change(self.folder / "s.h5", self.spoil)
@@ -76,9 +76,9 @@ class Readers(Analysis):
         self.check_groups(status["groups"])
         text = self.succeed("clogsweep", "status", "s.h5").stdout
         self.assertIn("28 clogged, 0 flowing, 12 failed; 8 interrupted", text)
-        for told in (text, self.succeed("clogfit", "s.h5").stdout):
-            self.assertIn("12 failed; the column `message` says why, and counted as not clogged up to", told)
-            self.assertIn("8 runs are unfinished", told)
+        for printed in (text, self.succeed("clogfit", "s.h5").stdout):
+            self.assertIn("12 failed; the column `message` says why, and counted as not clogged up to", printed)
+            self.assertIn("8 runs are unfinished", printed)
 
     def test_parts_of_a_sweep(self):
         for name, condition in (("few.h5", "seed<=6"), ("others.h5", "seed>6"), ("failed.h5", "status=failed")):
@@ -91,13 +91,13 @@ class Readers(Analysis):
             self.assertEqual([group[name] for name in ("runs", "clogs", "failed")], [3, 0, 3])
 
     def test_comparisons(self):
-        told = self.fit("compare", "s.h5", "--by", "line-tension")["comparisons"]
+        printed = self.fit("compare", "s.h5", "--by", "line-tension")["comparisons"]
         self.write("own.csv", "distance [sigma],clogged\n1,1\n2,1\n3,0\n")
         measured = self.fit("compare", "own.csv", "s.h5")["comparisons"]
-        self.assertEqual((len(told), len(measured)), (3, 4))
-        for one in told:
+        self.assertEqual((len(printed), len(measured)), (3, 4))
+        for one in printed:
             self.assertEqual((one["runs_here"], one["clogs_here"], one["pairs"]), (12, 7, 12))
-        for tension, one in zip(TENSIONS[1:], told):
+        for tension, one in zip(TENSIONS[1:], printed):
             self.assertAlmostEqual(one["clogging_length_here"], self.lengths[tension], places=9)
             self.assertAlmostEqual(one["ratio"], self.lengths[tension] / self.lengths[TENSIONS[0]], places=9)
         for tension, one in zip(TENSIONS, measured):
@@ -127,7 +127,7 @@ class Readers(Analysis):
         text = self.succeed("clogfit", "curve", "s.h5").stdout
         self.assertIn("  (12 of 48 runs failed, and count as not clogged up to sound_distance)\n", text)
         self.assertIn("  (4 of 4 points: some runs are in progress", text)
-        # A sweep without failures and doubts says nothing of them.
+        # Without failures and doubts, there is no message about them.
         rows = table(self.copy_sweep("s.h5", *SWEEP))
         exponential = -4 * np.log(1 - (rows.seed - 0.5) / 12)
         stored_rows.change_columns(self.folder / "s.h5", status=b"clogged", clogged_by=b"certified", mechanism=b"squeezed", failed_by=b"none",
@@ -148,22 +148,22 @@ class Readers(Analysis):
             self.assertNotIn("not_exponential", f"{one['doubts_here']} {one['doubts_there']}")
 
     def test_pictures_of_comparisons_show_failures_and_doubts(self):
-        def drawn(told):
-            axes, = style.figure_of(ratios.draw_on, told).axes
+        def drawn(printed):
+            axes, = style.figure_of(ratios.draw_on, printed).axes
             faces = [line.get_markerfacecolor() == "white" for line in axes.lines if line.get_marker() in style.MARKERS]
             return faces, [text.get_text() for text in axes.texts][-1], [[dashes is not None for _, dashes in bars.get_linestyle()] for bars in axes.collections]
-        told = self.fit("compare", "s.h5", "--by", "line-tension")
-        for one in told["comparisons"]:
+        printed = self.fit("compare", "s.h5", "--by", "line-tension")
+        for one in printed["comparisons"]:
             for side in ("here", "there"):
                 one[f"doubts_{side}"], one[f"failed_{side}"] = "censored_by_time", 0
-        faces, notes, _ = drawn(told)
+        faces, notes, _ = drawn(printed)
         self.assertEqual(faces, [False] * 3)
         for word in ("hollow", "failed", "incomplete"):
             self.assertNotIn(word, notes)
-        first, second, third = told["comparisons"]
+        first, second, third = printed["comparisons"]
         first["doubts_there"], second["doubts_here"], third["failed_here"] = "failures_matter not_exponential", "incomplete few_clogs", 2
         second["interval"] = "paired"
-        faces, notes, dashed = drawn(told)
+        faces, notes, dashed = drawn(printed)
         self.assertEqual((faces, dashed), ([True, True, False], [[True], [False], [True]]))
         for words in ("hollow: failures, which would change the length if they were clogs, or fewer than 5 clogs",
                       "incomplete: runs of 1 of 3 points", "failed: some runs of 1 of 3 points",
@@ -294,9 +294,9 @@ class Seeds(ProgramTest):
         self.assertLess(width, 0.75)
         self.assertEqual((group["failed"], group["clogs"]), (4, 11))
         self.spoil(range(1, 20))
-        told = self.run_program(*command)
-        self.assertEqual(told.returncode, 1)  # Every run has failed.
-        self.assertIn("not: the only one with 0 clogs of 8 seeds, 8 failed (it takes 11 clogs)", told.stderr)
+        printed = self.run_program(*command)
+        self.assertEqual(printed.returncode, 1)  # Every run has failed.
+        self.assertIn("not: the only one with 0 clogs of 8 seeds, 8 failed (it takes 11 clogs)", printed.stderr)
 
     def test_an_interrupted_run_is_resumed_and_not_failed(self):
         command = [*PRECISE, "--until-precision=75%", "--most-seeds=14"]
@@ -355,17 +355,18 @@ class Devices(Analysis):
 
 
 class Searches(Analysis):
-    """Tests commands that ask how droplets end."""
+    """Tests commands that depend on the ends of droplets."""
 
     def run_and_fail(self, failures):
-        """@return a function that runs a program, and lets those runs of its sweep fail that failures(rows) chooses"""
+        """@return a function that runs a program. It makes those runs of the program's sweep fail that failures(rows)
+        chooses."""
         original = programs.run_program
 
         def run(program, *words):
-            told = original(program, *words)
+            printed = original(program, *words)
             path = pathlib.Path(words[words.index("--output") + 1])
             stored_rows.change(path, lambda rows: fail(rows, failures(rows), 7.0, 0.01))
-            return told
+            return printed
 
         return unittest.mock.patch.object(programs, "run_program", run)
 
@@ -379,13 +380,13 @@ class Searches(Analysis):
         keys = {"vertices": "64", "max-time": "10"}
         falls = collision.Collisions(BIN / "clogsweep", self.folder, keys)
         with self.run_and_fail(lambda rows: rows["line_tension"] == 0.5):
-            broken, told = self.warnings(lambda: falls.break_up(0, [0.3, 0.5]))
+            broken, printed = self.warnings(lambda: falls.break_up(0, [0.3, 0.5]))
         warning = "runs failed and count as {}; the first one: made to fail\n"
-        self.assertEqual((broken, told), ([False, False], "1 of 2 " + warning.format("whole")))
+        self.assertEqual((broken, printed), ([False, False], "1 of 2 " + warning.format("whole")))
         droplets = prediction.Droplets(BIN / "clogsweep", self.folder, keys | {"line-tension": "1"})
         with self.run_and_fail(lambda rows: rows["task"] >= 0):
-            ends, told = self.warnings(lambda: droplets.ends([[(0, 0, 0.3)]]))
-        self.assertEqual((ends, told), ({1.0: [b""]}, "1 of 1 " + warning.format("passed")))
+            ends, printed = self.warnings(lambda: droplets.ends([[(0, 0, 0.3)]]))
+        self.assertEqual((ends, printed), ({1.0: [b""]}, "1 of 1 " + warning.format("passed")))
         self.assertEqual(self.warnings(lambda: droplets.ends([[(0, 0, 0.3)]]))[1], "")
 
     def test_critical_angles_state_failures_and_unfinished_runs(self):

@@ -33,30 +33,30 @@ class Records(unittest.TestCase):
     def fits():
         found = []
         for record in RECORDS:
-            told = record["told"]
-            for recorded in told["curves"]:
-                at = [[math.log(point[key]) for key in told["keys"]] for point in recorded["points"]]
+            printed = record["told"]
+            for recorded in printed["curves"]:
+                at = [[math.log(point[key]) for key in printed["keys"]] for point in recorded["points"]]
                 known = known_points(at, [point["clogs"] for point in recorded["points"]],
                                      [point["total_distance"] for point in recorded["points"]])
                 places = points.grid_over(known.places)
-                found.append((told, recorded, known, places, model.fit_curve(known, places)))
+                found.append((printed, recorded, known, places, model.fit_curve(known, places)))
         return found
 
     def test_mean_band_crossings_and_mechanisms_agree_with_the_recorded_ones(self):
-        for told, recorded, known, places, curve in self.fits():
+        for printed, recorded, known, places, curve in self.fits():
             step = recorded["curve"]["step"]
-            whole = features.band(curve, told["confidence"])
+            whole = features.band(curve, printed["confidence"])
             shown = recorded["curve"]["places"]
             np.testing.assert_allclose(whole[:, ::step], [[place[name] for place in shown] for name in LENGTH], rtol=1e-6)
-            for i, key in enumerate(told["keys"]):
+            for i, key in enumerate(printed["keys"]):
                 np.testing.assert_allclose(np.exp(places[::step, i]), [place[key] for place in shown], rtol=1e-12)
-            by_cause = answer.bands_by_cause([point["causes"] | {"clogs": point["clogs"]} for point in recorded["points"]], known, places, told["confidence"], whole)
+            by_cause = answer.bands_by_cause([point["causes"] | {"clogs": point["clogs"]} for point in recorded["points"]], known, places, printed["confidence"], whole)
             for names, band in by_cause.items():
                 np.testing.assert_allclose(band[:, ::step], [[place[name] for place in shown] for name in names], rtol=1e-6)
             self.assertEqual(len(by_cause), sum(names[0] in shown[0] for names in answer.CAUSES.values()))
             for one in recorded["crossings"]:
-                key = told["keys"][0]
-                found = min(features.find_crossings(curve, places[:, 0], one["clogging_length"], told["confidence"]),
+                key = printed["keys"][0]
+                found = min(features.find_crossings(curve, places[:, 0], one["clogging_length"], printed["confidence"]),
                             key=lambda crossing: abs(crossing.place - math.log(one[key])))
                 self.assertEqual(found.is_upward, one["direction"] == "upwards")
                 for value, name in ((found.place, key), (found.lower, f"{key}_lower"), (found.upper, f"{key}_upper")):
@@ -64,8 +64,8 @@ class Records(unittest.TestCase):
                     self.assertAlmostEqual(math.exp(-value) * one[name] if one[name] else 1.0 * math.isinf(value), 1, delta=1e-6)
 
     def test_peaks_agree_and_their_intervals_do_within_the_scatter_of_the_draws(self):
-        for told, recorded, _, places, curve in self.fits():
-            peak = features.find_peak(curve, places, told["confidence"])
+        for printed, recorded, _, places, curve in self.fits():
+            peak = features.find_peak(curve, places, printed["confidence"])
             expected = recorded["peak"]
             self.assertAlmostEqual(peak.length / expected["clogging_length"], 1, delta=1e-6)
             # Both programs use 2000 draws. The standard error of an end of the interval follows from the density of the
@@ -73,12 +73,12 @@ class Records(unittest.TestCase):
             draws = features.tops(features.drawn_curves(curve), places)
             ends = [(np.log([peak.length_lower,
                              peak.length_upper]), [math.log(expected[name]) for name in LENGTH[1:]], draws[1])]
-            for i, key in enumerate(told["keys"]):
+            for i, key in enumerate(printed["keys"]):
                 self.assertAlmostEqual(math.exp(peak.place[i]) / expected[key], 1, delta=1e-6)
                 ends.append(((peak.place_lower[i], peak.place_upper[i]),
                              [math.log(expected[f"{key}{end}"]) for end in ("_lower", "_upper")], draws[0][:, i]))
             for ours, theirs, drawn in ends:
-                for tail, mine, other in zip(((1 - told["confidence"]) / 2, (1 + told["confidence"]) / 2), ours, theirs):
+                for tail, mine, other in zip(((1 - printed["confidence"]) / 2, (1 + printed["confidence"]) / 2), ours, theirs):
                     error = math.sqrt(2 * tail * (1 - tail) / features.NUM_DRAWS)
                     low, high = np.quantile(drawn, [max(tail - 4 * error, 0), min(tail + 4 * error, 1)])
                     self.assertTrue(low - 1e-9 <= other <= high + 1e-9, (mine, other, low, high))
@@ -189,8 +189,8 @@ class WhichPoints(unittest.TestCase):
         self.assertEqual((len(curve["points"]), curve["shared"]), (4, {}))
 
     def test_numerics_that_vary_at_the_same_physics_do(self):
-        told = curves_of([group(tension, inertia=inertia) for tension in TENSIONS for inertia in (1.0, 4.0)])
-        self.assertEqual([curve["shared"] for curve in told["curves"]], [{"inertia": 1.0}, {"inertia": 4.0}])
+        printed = curves_of([group(tension, inertia=inertia) for tension in TENSIONS for inertia in (1.0, 4.0)])
+        self.assertEqual([curve["shared"] for curve in printed["curves"]], [{"inertia": 1.0}, {"inertia": 4.0}])
 
     def test_what_follows_from_the_key_does_not_split_a_curve(self):
         groups = [group(1.0, obstacle_gap=gap, obstacle_density=0.7 / (gap + 0.3)**2, preset=f"p{gap}") for gap in (0.2, 0.3, 0.4, 0.5)]
@@ -199,14 +199,14 @@ class WhichPoints(unittest.TestCase):
 
     def test_excluded_points_are_named_with_the_reason(self):
         groups = [*(group(tension) for tension in TENSIONS), group(1.0, friction=0.5), group(0.5, total_distance=0.0), group(2.0, exit=15.0)]
-        told = curves_of(groups)
-        self.assertEqual(len(told["curves"]), 1)
-        reasons = {one["group"]: one["reason"] for one in told["excluded"]}
+        printed = curves_of(groups)
+        self.assertEqual(len(printed["curves"]), 1)
+        reasons = {one["group"]: one["reason"] for one in printed["excluded"]}
         self.assertEqual(sorted(reasons), [4, 5, 6])
         for index, words in ((4, "only one value of line-tension with friction=0.5"), (5, "distance"), (6, "exit")):
             self.assertIn(words, reasons[index])
         self.assertIn("in no curve:\n  line_tension 1: only one value",
-                      table.text(told, []).replace("line_tension 0.5", "").replace("  line_tension 2", ""))
+                      table.text(printed, []).replace("line_tension 0.5", "").replace("  line_tension 2", ""))
 
     def test_points_share_obstacles_where_they_share_seeds_and_the_key_leaves_the_array(self):
         groups = [group(tension) for tension in TENSIONS]

@@ -74,7 +74,7 @@ class Foreign(Analysis):
         done = self.analyse("refine", "line-tension", *FEW, "--until", "curve=20%", "--output", "s.h5", "--programs", BIN)
         self.assertEqual((done.returncode, path.read_bytes()), (2, before), done.stdout + done.stderr)
         self.assertIn("cannot resume s.h5", done.stderr)
-        # What copies the sweep copies its rows alone, so that it can be resumed.
+        # Commands that copy the sweep copy only its rows, so that the copy can be resumed.
         self.assertIn("nothing left to do", self.succeed("clogsweep", *(word.replace("1..2", "1..3") for word in FEW), "--output", "merged.h5").stderr)
 
     def test_the_named_command_copies_the_objects_out(self):

@@ -1,4 +1,4 @@
-"""Tests a sweep on two hosts of which one dies. tests/two_hosts.sh explains how it simulates hosts."""
+"""Tests a sweep on two hosts, one of which dies. tests/two_hosts.sh explains how it simulates hosts."""
 
 import contextlib
 import os

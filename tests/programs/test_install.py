@@ -46,8 +46,8 @@ class Installation(unittest.TestCase):
 class Installed(Installation):
     def test_nothing_knows_where_it_was_built(self):
         cache = (BIN.parent / "CMakeCache.txt").read_text()
-        # A build with sanitizers contains the full path of every source. Nobody installs such a build, so it is not
-        # checked.
+        # A build with sanitizers contains the full path of every source. It is not checked, because nobody installs
+        # such a build.
         sources = [] if "CLOG_SANITIZE:STRING=address" in cache else [ROOT, BIN.parent]
         for path in self.prefix.rglob("*"):
             self.assertFalse(path.is_symlink(), path)
@@ -70,7 +70,7 @@ class Installed(Installation):
         said = self.called("clogsweep", *KEYS[1:], "line-tension=30", "--dry-run")
         title, = re.findall(r"outside the range tested for soundness \(handbook, ([^)]+)\)", said)
         pages = (self.prefix / "share/doc/clogsweep/docs").rglob("*.md")
-        self.assertEqual([page.name for page in pages if page.read_text().startswith(f"# {title}\n")], ["soundness.md"])
+        self.assertEqual([page.name for page in pages if page.read_text().startswith(f"# {title}\n")], ["trust.md"])
 
     def test_a_config_that_comes_with_it(self):
         said = self.called("clogsweep", "--config", self.prefix / "share/clogsweep/jobs/laptop.cfg", "--print-config")
@@ -89,7 +89,7 @@ class Installed(Installation):
                     f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
     def completed(self, *words, function="_clogsweep"):
-        """The words by which bash offers to complete the last word."""
+        """The completions that bash offers for the last word."""
         script = f"""
             compopt() {{ :; }}
             . {self.prefix}/share/bash-completion/completions/{words[0]}

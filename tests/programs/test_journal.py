@@ -67,8 +67,8 @@ class Journal(Analysis):
     def test_commands_make_them(self):
         self.copy_sweep("s.h5", *GAPS)
         for command, *options in (["clogging-length"], ["compare", "--by", "obstacle-gap"]):
-            told = self.draw(command, "s.h5", "--width", 8.6, *options, "--programs", BIN).stdout
-            self.assertRegex(told, rf"^s-{command}.png \(and .pdf\)\n[\s\S]*95 % confidence intervals")
+            printed = self.draw(command, "s.h5", "--width", 8.6, *options, "--programs", BIN).stdout
+            self.assertRegex(printed, rf"^s-{command}.png \(and .pdf\)\n[\s\S]*95 % confidence intervals")
         self.refuse_analysis("dwell", "s.h5", "--width", "0", words=["--width", "0", "width in cm"])
 
     def test_panels_and_strips_make_no_tower(self):

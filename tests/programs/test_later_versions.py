@@ -65,8 +65,8 @@ class LaterVersions(Analysis):
             self.succeed("clogsweep", "select", "s.h5", condition, "--output", name)
         self.succeed("clogsweep", "merge", "one.h5", "other.h5", "--output", "merged.h5")
         for name, number in (("s.h5", 8), ("salvaged.h5", 8), ("one.h5", 4), ("other.h5", 6), ("merged.h5", 8)):
-            told = self.succeed("clogsweep", "status", name).stdout
-            self.assertIn(f"{name}: {number} of {number} runs finished, {number} clogged", told)
+            printed = self.succeed("clogsweep", "status", name).stdout
+            self.assertIn(f"{name}: {number} of {number} runs finished, {number} clogged", printed)
             self.succeed("clogsweep", "verify", name)
 
     def test_python_reads_it(self):

@@ -67,8 +67,8 @@ class Lengths(ProgramTest):
 
     def test_lengths_shapes_and_survival_are_those_of_the_survival_package_of_r(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
-        told = self.lengths("aml.csv")
-        maintained, not_maintained = told["groups"]
+        printed = self.lengths("aml.csv")
+        maintained, not_maintained = printed["groups"]
         # From R: `length` is exp(coef(survreg(Surv(time, status) ~ 1, dist="exponential"))). `shape` is 1/scale with
         # dist="weibull". `p_value` belongs to the likelihood-ratio test of these two fits.
         for group, name, runs, clogs, length, shape, p_value in [(maintained, "Maintained", 11, 7, 60.4285714279, 1.0318542417, 0.910781681452),
@@ -85,9 +85,9 @@ class Lengths(ProgramTest):
                                ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
-        # The table of the Python module. The expected values come from R's summary(..., times=161), and from the last
-        # step of the other group, for which R gives no bounds either.
-        groups = [*told["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
+        # The table of the Python module. Some expected values come from R's summary(..., times=161). The others come
+        # from the last step of the second group, for which R, too, gives no bounds.
+        groups = [*printed["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
         known = types.SimpleNamespace(output={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
         for name, expected in [("distance", 161), ("at_risk", 1), ("clogs", 0), ("probability", 0.184090909091),
@@ -161,26 +161,26 @@ class Lengths(ProgramTest):
             for command in (["lengths", "own.csv"], ["compare", "own.csv", "--by", name]):
                 self.refuse("clogfit", *command, words=[f"own.csv line 1: column '{name}'", "outcome", "delete it"])
 
-    def test_labels_with_only_clogged_or_only_moving_droplets_are_told(self):
-        """A concentration at which nothing clogs is honest, so this is no error."""
-        def told(*lines):
+    def test_labels_with_only_clogged_or_only_moving_droplets_are_named(self):
+        """It is no error if nothing clogs at one concentration."""
+        def printed(*lines):
             self.write("own.csv", "distance [mm],clogged,x,y\n" + "".join(f"{line}\n" for line in lines))
             return self.succeed("clogfit", "lengths", "own.csv").stderr
 
         note = "clogfit: own.csv: each value of 'x' has only clogged or only moving droplets; if the column restates the outcome, delete it\n"
         outcomes = ["5,1,c,1", "6,0,f,1", "7,1,c,1", "8,0,f,1"]
-        self.assertEqual(told(*outcomes), note)
-        self.assertEqual(told(*outcomes, "9,0,alone,2"), note)
+        self.assertEqual(printed(*outcomes), note)
+        self.assertEqual(printed(*outcomes, "9,0,alone,2"), note)
         # A table of few droplets
         for lines in (outcomes[:3], outcomes[1:], ["5,1,c,1", "6,0,f,1", "7,0,f,1"]):
-            self.assertEqual(told(*lines), note)
+            self.assertEqual(printed(*lines), note)
         # A column that numbers the droplets, and one with few droplets of equal values
-        self.assertNotIn("restates", told("5,1,1,1", "6,0,2,1", "7,1,3,1", "8,0,4,1"))
-        self.assertEqual(told("4,0,0,1", *(f"{5 + i},{i % 2},{i},1" for i in range(9))), "")
+        self.assertNotIn("restates", printed("5,1,1,1", "6,0,2,1", "7,1,3,1", "8,0,4,1"))
+        self.assertEqual(printed("4,0,0,1", *(f"{5 + i},{i % 2},{i},1" for i in range(9))), "")
         for line in ("9,0,c,1", "9,1,f,1"):
-            self.assertEqual(told(*outcomes, line), "")
-        self.assertEqual(told("5,1,c,1", "6,1,f,1", "7,1,c,1", "8,1,f,1"), "")
-        self.assertEqual(told("5,1,c,1", "7,1,c,1"), "")
+            self.assertEqual(printed(*outcomes, line), "")
+        self.assertEqual(printed("5,1,c,1", "6,1,f,1", "7,1,c,1", "8,1,f,1"), "")
+        self.assertEqual(printed("5,1,c,1", "7,1,c,1"), "")
         # Quantities that were set before the run
         for name in ("line-tension", "line_tension", "diameter [mm]", "angle"):
             self.write("own.csv", f"distance [mm],clogged,{name}\n5,1,1\n6,0,2\n7,1,1\n8,0,2\n")
@@ -193,7 +193,7 @@ class Lengths(ProgramTest):
             unknown = (60, None) if unit == "mm" else (None, 30)
             self.write("own.csv", f"diameter [um],distance [{unit}],clogged\n" + "".join(
                 f"{diameter and 1000 * diameter},{way / to_mm[diameter]!r},1\n" for diameter, way in rows))
-            for lab in ([], ["--lab", "lab.cfg"]):  # The laboratory's droplet of 2 mm need not be the one of an empty cell.
+            for lab in ([], ["--lab", "lab.cfg"]):  # An empty cell need not mean the laboratory's droplet.
                 found = {group["diameter"]: (group["clogging_length_mm"], group["clogging_length"]) for group in self.lengths("own.csv", *lab)["groups"]}
                 self.assertEqual(found, {None: unknown, 1: (10, 10), 2: (20, 10), 2.5: (50, 20)})
                 text = self.succeed("clogfit", "lengths", "own.csv", *lab).stdout
@@ -217,7 +217,7 @@ class Lengths(ProgramTest):
                                   ("diameter [mm]", "-2", ["above 0"]), ("angle [deg]", "1,000", ["'1,000'"]), ("angle", "flat", ["line 2: angle is 'flat'", "empty"])]:
             self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [mm];clogged;{head}\n12.5;1;{cell}\n"), words=["own.csv", *words])
             self.refuse("clogfit", "lengths", self.write("own.csv", f'{head},distance [mm],clogged\n"{cell}",12,1\n'), words=["own.csv", *words])
-        # What is no table of distances at all is not about a diameter.
+        # A table without distances gets no message about a diameter.
         self.refuse("clogfit", "lengths", self.write("own.csv", "x,y,diameter\n1,2,3\n"),
                     words=["own.csv line 1: has no column distance"])
 
@@ -242,8 +242,8 @@ class Lengths(ProgramTest):
         for arguments, labels in ((["lengths", "own.csv", "--lab",
                                     "lab.cfg"], ["wall"]), (["compare", "own.csv", "--by", "wall"], []),
                                   (["compare", "own.csv", "own.csv", "--lab", "lab.cfg"], ["wall"])):
-            told = json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
-            names = [name for name in (told.get("groups") or told["comparisons"])[0] if name not in labels]
+            printed = json.loads(self.succeed("clogfit", *arguments, "--format", "json").stdout)
+            names = [name for name in (printed.get("groups") or printed["comparisons"])[0] if name not in labels]
             self.assertGreater(len(names), 10)
             in_any_form = [form(name) for name in names for form in (str.title, "{} [mm]".format, lambda name: name.replace("_", "-"))]
             in_table = ["note", "Note", "95 %", "99%", "lambda/mm", "lambda [sigma]"] if arguments[0] == "lengths" else []
@@ -292,24 +292,24 @@ class Lengths(ProgramTest):
                          ("not_exponential equal_distances", 0, None))
         text = self.succeed("clogfit", "lengths", "own.csv").stdout
         self.assertRegex(text, r"9\.68 +xe")
-        self.assertIn("\ne: half of the clogs or more", text)
+        self.assertIn("\ne: at least half of the clogs", text)
 
     def test_what_was_read_is_said_in_words_for_experiments(self):
         self.write("own.csv", "distance [mm],clogged\n10,1\n20,0\n30,0\n")
-        told = self.succeed("clogfit", "lengths", "own.csv").stdout
-        self.assertIn("read: of 3 droplets, 1 clogged (clogged = 1) and 2 still moved", told)
-        self.assertIn("more droplets are needed", told)
+        printed = self.succeed("clogfit", "lengths", "own.csv").stdout
+        self.assertIn("read: of 3 droplets, 1 clogged (clogged = 1) and 2 still moved", printed)
+        self.assertIn("more droplets are needed", printed)
 
     def test_groups_of_one_table_are_compared(self):
         random = np.random.default_rng(3)
         runs = [(group, wall, random.exponential(length)) for group, length in ((2, 50), (10, 20), (0.5, 90)) for wall in ("a", "b") for _ in range(6)]
         self.write("own.csv", "surfactant [mM],wall,distance [mm],clogged\n" + "".join(f"{group},{wall},{distance!r},1\n" for group, wall, distance in runs))
-        told = json.loads(self.succeed("clogfit", "compare", "own.csv", "--by", "surfactant [mM]", "--format", "json").stdout)
-        self.assertEqual([(one["here"], one["there"], one["wall"]) for one in told["comparisons"]],
+        printed = json.loads(self.succeed("clogfit", "compare", "own.csv", "--by", "surfactant [mM]", "--format", "json").stdout)
+        self.assertEqual([(one["here"], one["there"], one["wall"]) for one in printed["comparisons"]],
                          [(f"surfactant [mM]={group}", "surfactant [mM]=0.5", wall)
                           for group in (2, 10)
                           for wall in ("a", "b")])
-        for one in told["comparisons"]:
+        for one in printed["comparisons"]:
             of = {group: sum(distance for g, wall, distance in runs if g == group and wall == one["wall"]) / 6 for group in (0.5, 2, 10)}
             ratio = of[float(one["here"].partition("=")[2])] / of[0.5]
             self.assertAlmostEqual(one["ratio"], ratio)
@@ -334,8 +334,8 @@ class Lengths(ProgramTest):
         self.assertRegex(text, r"log-rank p\n.* 0\.065\n")
         # From R: `p.adjust(c(0.0653393220405, 1), "holm")`.
         self.write("three.csv", table(["x", "distance [mm]", "clogged"]) + "".join(f"Z,{pair.replace(' ', ',')}\n" for pair in AML["Maintained"].split(", ")))
-        told = json.loads(self.succeed("clogfit", "compare", "three.csv", "--by", "x", "--format", "json").stdout)["comparisons"]
-        for one, p_value in zip(told, (0.130678644081, 1)):
+        printed = json.loads(self.succeed("clogfit", "compare", "three.csv", "--by", "x", "--format", "json").stdout)["comparisons"]
+        for one, p_value in zip(printed, (0.130678644081, 1)):
             self.assertAlmostEqual(one["log_rank_p_holm"], p_value, places=9)
         self.assertIn("corrected for 2 comparisons (Holm)\n",
                       self.succeed("clogfit", "compare", "three.csv", "--by", "x").stdout)
@@ -343,7 +343,7 @@ class Lengths(ProgramTest):
     def test_a_picture_has_the_survival_curve_of_each_group(self):
         self.write("aml.csv", table(["x", "distance [mm]", "clogged"]))
         axes, = style.figure_of(survival_curve.draw_on, survival_curve.of_table(self.lengths("aml.csv")), "mm").axes
-        self.assertEqual(axes.get_xlabel(), "displacement along the flow $r$ [mm]")
+        self.assertEqual(axes.get_xlabel(), "displacement along gravity $r$ [mm]")
         curves = {line.get_label(): line for line in axes.lines if line.get_label().startswith("x ")}
         self.assertEqual(list(curves), ["x Maintained", "x Nonmaintained"])
         # From R: `survfit(Surv(time, status) ~ x, data = aml)`.
@@ -377,8 +377,8 @@ class Lengths(ProgramTest):
         p_values = {group["wall"]: group["weibull_p_value"] for group in self.lengths("own.csv")["groups"]}
         for wall, p_value in p_values.items():
             self.assertTrue(p_value < 0.01 / 4 if wall == "c" else 0.05 / 2 < p_value < 0.05, p_values)
-        told = json.loads(self.succeed("clogfit", "compare", "own.csv", "--by", "wall", "--format", "json").stdout)["comparisons"]
-        self.assertEqual([(one["doubts_here"], one["doubts_there"]) for one in told], [(None, None), ("not_exponential", None), (None, None)])
+        printed = json.loads(self.succeed("clogfit", "compare", "own.csv", "--by", "wall", "--format", "json").stdout)["comparisons"]
+        self.assertEqual([(one["doubts_here"], one["doubts_there"]) for one in printed], [(None, None), ("not_exponential", None), (None, None)])
         for wall in "ab":
             self.write(f"{wall}.csv",
                        "distance [mm],clogged\n" + "".join(f"{way!r},1\n" for way in ways(near, 5 + (wall == "b"))))
@@ -461,7 +461,7 @@ class Beside(ProgramTest):
         self.write("other.csv", "distance [sigma],clogged\n10,1\n")
         self.assertEqual([one["ratio"] for one in self.compare("own.csv", "other.csv")],
                          [10 / 3, 10 / (10 / 2.004), 1, 10 / 15])
-        # The picture leaves these droplets out, too.
+        # The picture excludes these droplets, too.
         for options, kept in ((["--lab", self.folder / "lab.cfg"], [(2, 3), (2.004, 10 / 2.004)]), ([], [(2, 3), (2.004, 10 / 2.004), (4, 10), (4, 15)])):
             with contextlib.redirect_stderr(io.StringIO()) as said:
                 own = measured.lengths_of(self.folder / "own.csv",

@@ -46,17 +46,17 @@ class Module(Analysis):
 
     def test_groups_are_those_of_clogfit(self):
         fit = self.sweep().fit()
-        told = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
-        self.assertEqual(fit.output, told)
+        printed = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        self.assertEqual(fit.output, printed)
         self.assertEqual(fit.groups.line_tension.tolist(), [0.5, 3])
-        self.assertEqual(fit.groups.clogging_length.tolist(), [group["clogging_length"] for group in told["groups"]])
+        self.assertEqual(fit.groups.clogging_length.tolist(), [group["clogging_length"] for group in printed["groups"]])
         curve = fit.survival(1)
         self.assertEqual(curve.iloc[0].to_dict(), {"distance": 0, "at_risk": 4, "clogs": 0, "probability": 1, "standard_error": 0, "lower": 1, "upper": 1})
-        self.assertEqual(curve.probability.tolist()[1:len(told["groups"][1]["survival"]) + 1], [step["probability"] for step in told["groups"][1]["survival"]])
-        self.assertEqual(curve.distance.iloc[-1], max(told["groups"][1]["censored_distances"] + curve.distance.tolist()))
+        self.assertEqual(curve.probability.tolist()[1:len(printed["groups"][1]["survival"]) + 1], [step["probability"] for step in printed["groups"][1]["survival"]])
+        self.assertEqual(curve.distance.iloc[-1], max(printed["groups"][1]["censored_distances"] + curve.distance.tolist()))
         self.assertEqual((fit.units["clogging_length"], fit.confidence), ("sigma", 0.95))
 
-    def test_mean_speeds_of_fewer_than_three_runs_are_told_nowhere(self):
+    def test_mean_speeds_of_fewer_than_three_runs_are_printed_nowhere(self):
         fit = self.sweep("line-tension=0.1,0.7,1", "obstacle-gap=0.4", "seeds=1..4").fit()
         self.assertEqual(fit.groups.relative_speed_runs.tolist(), [3, 2, 1])
         lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.splitlines()]
@@ -278,9 +278,10 @@ class Module(Analysis):
                               ("len(clogsweep.open('s.h5').rows)", ["numpy", "h5py", "pandas"]),
                               ("import clogsweep.commands.predict", ["numpy", "h5py"])):
             with self.subTest(lines=lines):
-                told = subprocess.run([sys.executable, "-c", f"import sys, clogsweep\n{lines}\nprint([name for name in {libraries} if name in sys.modules])"],
-                                      cwd=self.folder, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")}, capture_output=True, text=True, check=True)
-                self.assertEqual(told.stdout, f"{loaded}\n")
+                printed = subprocess.run([sys.executable, "-c", f"import sys, clogsweep\n{lines}\nprint([name for name in {libraries} if name in sys.modules])"],
+                                         cwd=self.folder, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")},
+                                         capture_output=True, text=True, check=True)
+                self.assertEqual(printed.stdout, f"{loaded}\n")
 
     def test_programs_that_are_not_there_are_asked_for(self):
         self.sweep()

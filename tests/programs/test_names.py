@@ -57,8 +57,8 @@ class Names(Analysis):
                 self.draw(command, SWEEP, "--output", f"{SWEEP}-{command}", "--programs", BIN)
                 with Image.open(self.folder / f"{SWEEP}-{command}.png") as picture:
                     self.assertRegex(picture.info["Description"], r"b(\\xff|\ufffd)\\x1b\[31m.csv")
-        told = self.draw("report", SWEEP, "--examples", 0, "--programs", BIN).stdout
-        self.assertEqual(told, r"s$1$\xfe\x1b-report.html" + "\n")
+        printed = self.draw("report", SWEEP, "--examples", 0, "--programs", BIN).stdout
+        self.assertEqual(printed, r"s$1$\xfe\x1b-report.html" + "\n")
         page = (self.folder / f"{SWEEP[:-3]}-report.html").read_text(encoding="utf-8")
         self.assertIn(SHOWN, page)
         self.assertNotIn("\x1b", page)
@@ -138,10 +138,10 @@ class Words(Analysis):
     def test_pictures_draw_them(self):
         self.draw("report", "s.h5", "--examples", 0, "--programs", BIN)
         self.assertNotIn("\x1b", (self.folder / "s-report.html").read_text(encoding="utf-8"))
-        told = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
-        for group in told["groups"]:
+        printed = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        for group in printed["groups"]:
             group["preset"] = WORD
-        self.assertIn(r'preset x,"y\$1\$\x1b[', Groups(told).caption())
+        self.assertIn(r'preset x,"y\$1\$\x1b[', Groups(printed).caption())
 
 
 class Outputs(Analysis):
@@ -175,7 +175,7 @@ class Outputs(Analysis):
         self.assertEqual(page.read_text(encoding="utf-8"), "<!DOCTYPE html> earlier")
 
     def test_every_output_takes_the_place_of_the_earlier_one(self):
-        """A second name still leads to the earlier file with its old content. So the command did not write into this
+        """A second name of the earlier file still leads to the old content. So the command did not write into this
         file."""
         self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4")
         self.copy_sweep("run.h5", "array", *QUICK, "line-tension=3", "seeds=1", "--polygon-interval=20",

@@ -13,8 +13,8 @@ from support import TIMING, ProgramTest, table
 PLAIN = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F"}
 COSINES = "import math; print([math.cos(0.01 * i).hex() for i in range(10000)])"
 
-# The release of droplets with 80 vertices uses sines and cosines whose values would differ if they came from the C
-# library. Droplets with a large line tension clog soon.
+# The release of droplets with 80 vertices uses sines and cosines. If they came from the C library, their values would
+# differ. Droplets with a large line tension clog soon.
 POLYGONS = ["vertices=80", "box=20", "obstacle-density=saturated", "obstacle-gap=0.3", "line-tension=log(0.3,1,3)", "max-time=100", "seeds=1..3"]
 # The angle of this lattice (8 columns over 69 rows) would also differ.
 DISKS = ["model=sp", "wall-stiffness=10,100", "obstacle-layout=lattice", "lattice-angle=6.6135",

@@ -126,8 +126,8 @@ class Points(PointsTest):
             self.refuse("clogsweep", "vertices=64", setting, "--points", "p.csv", "--output", "s.h5",
                         words=[f"point 2: invalid {setting}", f"to give {key} for some points, make it a column of the points file"])
         self.write("p.csv", "obstacle-layout,orifice,seeds,box\nrandom,,1..3,20\nchannel,0.6,,\n")
-        told = self.succeed("clogsweep", "vertices=64", "--points", "p.csv", "--dry-run", "--output", "s.h5").stdout
-        self.assertEqual([line.split()[1] for line in told.splitlines()[1:5]],
+        printed = self.succeed("clogsweep", "vertices=64", "--points", "p.csv", "--dry-run", "--output", "s.h5").stdout
+        self.assertEqual([line.split()[1] for line in printed.splitlines()[1:5]],
                          ["density", "channel", "density", "density"])
         self.write("p.csv", "model,vertices\ndp,32\nsp,\n")
         self.refuse("clogsweep", "vertices=64", "wall-stiffness=5", "--points", "p.csv", "--output", "s.h5",
@@ -160,17 +160,17 @@ class Points(PointsTest):
 
     def test_points_without_chance_have_one_run(self):
         self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\nwall,\n")
-        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv",
-                            "--dry-run").stdout
-        self.assertIn("# 14 tasks: 3 parameter sets, 1 to 12 seeds each", told)
-        told = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12,
-                            "obstacle-layout=channel,wall", "--dry-run").stdout
-        self.assertIn("# 2 tasks: 2 parameter sets", told)
+        printed = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv",
+                               "--dry-run").stdout
+        self.assertIn("# 14 tasks: 3 parameter sets, 1 to 12 seeds each", printed)
+        printed = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12,
+                               "obstacle-layout=channel,wall", "--dry-run").stdout
+        self.assertIn("# 2 tasks: 2 parameter sets", printed)
         self.write("c.csv", "x,y\n5,5\n")
         self.write("p.csv", "obstacles,release\nc.csv,centre\nc.csv,anywhere\n")
-        told = self.succeed("clogsweep", "vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points",
-                            "p.csv", "--dry-run").stdout
-        self.assertIn("# 13 tasks: 2 parameter sets, 1 to 12 seeds each", told)
+        printed = self.succeed("clogsweep", "vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points",
+                               "p.csv", "--dry-run").stdout
+        self.assertIn("# 13 tasks: 2 parameter sets, 1 to 12 seeds each", printed)
         self.refuse("clogsweep", "vertices=64", "box=10", "--until-precision", "20%", "--points", "p.csv", "--output",
                     "s.h5", words=["no place for --until-precision (nothing is random with release=centre"])
         self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\n")

@@ -97,12 +97,12 @@ class Precision(ProgramTest):
         self.assertEqual(status["runs"], len(table(self.folder / "s.h5")))
 
     def test_a_dry_run_tells_between_what_limits_all_rounds_cost(self):
-        def told(*words):
+        def printed(*words):
             lines = self.succeed("clogsweep", *SWEEP[:-2], "--dry-run", *words).stdout.splitlines()
             return [line for line in lines if line.startswith("# ")]
 
         self.assertFalse(any("round" in line for line in self.succeed("clogsweep", *SWEEP[:-2], "--dry-run").stdout.splitlines()))
-        *_, bound, expected, first, rounds = told("--until-precision=20%", "--most-seeds=400")
+        *_, bound, expected, first, rounds = printed("--until-precision=20%", "--most-seeds=400")
         self.assertEqual(first, "# this is the first round: +-20 % needs 100 clogs per parameter set")
         bound = float(re.search("at most ([^ ]+) core-hours", bound)[1])
         expected = float(re.search("expected ([^ ]+) core-hours", expected)[1])
@@ -119,15 +119,15 @@ class Precision(ProgramTest):
         self.assertAlmostEqual(most / expected / 100, 1, delta=0.11)
         self.assertAlmostEqual(longest / bound / 100, 1, delta=0.02)
         self.assertIn("# --most-seeds=30 ends it before that; give 100 or more",
-                      told("--until-precision=20%", "--most-seeds=30"))
+                      printed("--until-precision=20%", "--most-seeds=30"))
 
     def test_a_dry_run_after_the_first_round_does_not_call_the_sweep_done(self):
         self.succeed("clogsweep", *SWEEP[:-2], "--output", "s.h5")
-        told = self.succeed("clogsweep", *SWEEP, "--output", "s.h5", "--dry-run").stdout
-        self.assertNotIn("nothing is left", told)
+        printed = self.succeed("clogsweep", *SWEEP, "--output", "s.h5", "--dry-run").stdout
+        self.assertNotIn("nothing is left", printed)
         hours = table(self.folder / "s.h5").processor_seconds.sum() / 3600
-        self.assertIn(f"# s.h5 has all 8 runs, which took {hours:.2g} core-hours\n", told)
-        self.assertIn(f"14 seeds each (--most-seeds) if few do, expected {hours * 14 / 4:.2g} core-hours", told)
+        self.assertIn(f"# s.h5 has all 8 runs, which took {hours:.2g} core-hours\n", printed)
+        self.assertIn(f"14 seeds each (--most-seeds) if few do, expected {hours * 14 / 4:.2g} core-hours", printed)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         plain = [*QUICK, "--output", "s.h5"]

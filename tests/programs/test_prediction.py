@@ -1,5 +1,5 @@
-"""Tests clogging lengths that are predicted from droplets on two obstacles. The result of each case has a closed
-form."""
+"""Tests the prediction of clogging lengths from droplets that fall on two obstacles. The result of each case has a
+closed form."""
 
 import math
 import os
@@ -98,7 +98,8 @@ class Predicted(Analysis):
                                "box=40mm").stdout.splitlines()
         self.assertEqual(head, "line_tension,clogging_length,squeezed,wrapped,doubts,clogging_length_mm")
         tension, length, *_, in_mm = line.split(",")
-        # A pair across the flow catches on its whole width: 20 sigma times 20 sigma divided by 0.8 sigma.
+        # A pair across the flow holds droplets over its whole width, so lambda is 20 sigma times 20 sigma divided by
+        # 0.8 sigma.
         self.assertEqual((tension, in_mm), ("3", "1000"))
         self.assertAlmostEqual(float(length), 20 * 20 / 0.8, delta=0.1)
         self.write("two.cfg", "diameter = 2 mm, 3 mm\nangle = 30 deg\n")

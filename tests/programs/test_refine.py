@@ -331,12 +331,12 @@ class Refine(RefineTest):
                              self.refine("obstacle-gap", *words, *more, "--budget=1h", "--dry-run", launcher=()).stderr)
 
     def test_a_dry_run_tells_what_the_rounds_may_cost(self):
-        told = self.refine("line-tension", *SWEEP, "--until=curve=20%", "--dry-run", launcher=()).stdout
+        printed = self.refine("line-tension", *SWEEP, "--until=curve=20%", "--dry-run", launcher=()).stdout
         for words in ("21 tasks: 7 parameter sets, 3 seeds each", "this is the first round",
                       "core-hours in all if every run clogs"):
-            self.assertIn(words, told)
-        told = self.refine("line-tension", *SWEEP, "--budget=10h", "--dry-run", launcher=()).stdout
-        self.assertIn("10 core-hours at most", told)
+            self.assertIn(words, printed)
+        printed = self.refine("line-tension", *SWEEP, "--budget=10h", "--dry-run", launcher=()).stdout
+        self.assertIn("10 core-hours at most", printed)
         self.assertEqual(self.snapshot(), {})
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
@@ -434,8 +434,8 @@ class CriticalAngle(RefineTest):
             with self.subTest(words=words, wanted=wanted):
                 planned = refine.planned(BIN / "clogsweep", *lattice, *words, f"lattice-angle={wanted}")
                 angle = critical_angle.nearest_angle(planned, wanted)
-                told = self.succeed("clogsweep", *lattice, *words, f"lattice-angle={angle}", "--dry-run").stdout
-                self.assertIn(f"at {angle:.4g} degrees (tan", told)
+                printed = self.succeed("clogsweep", *lattice, *words, f"lattice-angle={angle}", "--dry-run").stdout
+                self.assertIn(f"at {angle:.4g} degrees (tan", printed)
                 if words == ["box=20"]:  # no lattice is within the 0.1 degrees that clogsweep allows
                     tilts = [math.degrees(math.atan2(q, p)) for p in range(1, 7) for q in range(p) if 4 <= p * p + q * q <= (20 / 3)**2]
                     self.assertAlmostEqual(angle, min(tilts, key=lambda tilt: abs(tilt - wanted)))
@@ -445,8 +445,8 @@ class CriticalAngle(RefineTest):
 
     def test_a_lattice_of_a_given_length_is_searched_among_lattices_of_this_length(self):
         words = ["obstacle-layout=lattice", "lattice=rhombic", "obstacle-gap=2", "obstacle-diameter=1", "vertices=64", "terminal-speed=0.1", "box=100", "length=30"]
-        told = self.refine("lattice-angle", *words, "seeds=1", "lattice-angle=11.31,45", "max-time=10", "--budget=1h", "--dry-run").stdout
-        angles = [float(line.split("at ")[1].split()[0]) for line in told.splitlines() if "rhombic lattice" in line]
+        printed = self.refine("lattice-angle", *words, "seeds=1", "lattice-angle=11.31,45", "max-time=10", "--budget=1h", "--dry-run").stdout
+        angles = [float(line.split("at ")[1].split()[0]) for line in printed.splitlines() if "rhombic lattice" in line]
         self.assertEqual(len(angles), 5)
         for angle in angles:
             self.assertTrue(any(abs(math.tan(math.radians(angle)) * p - round(math.tan(math.radians(angle)) * p)) < 1e-3 for p in range(2, 11)), angle)
@@ -464,14 +464,14 @@ class CriticalAngle(RefineTest):
         self.angle(*words, max_time=20)
         number = len(table(self.folder / "s.h5"))
         stored_rows.change(self.folder / "s.h5", lambda rows: fail(rows, rows["task"] == 0, 7.0, 0.01))
-        told = self.angle(*words, max_time=20).stderr
-        self.assertIn(f"; 1 of {number} runs failed and do not count", told)
+        printed = self.angle(*words, max_time=20).stderr
+        self.assertIn(f"; 1 of {number} runs failed and do not count", printed)
 
     def test_a_dry_run_tells_what_the_rounds_may_cost(self):
-        told = self.refine("lattice-angle", *LATTICE, "lattice-angle=10.01,40", "max-time=1000",
-                           "--until=critical-angle=0.5", "--dry-run").stdout
+        printed = self.refine("lattice-angle", *LATTICE, "lattice-angle=10.01,40", "max-time=1000",
+                              "--until=critical-angle=0.5", "--dry-run").stdout
         for words in ("5 tasks: 5 parameter sets, 1 seed each", "takes about 2 more rounds, 6 runs"):
-            self.assertIn(words, told)
+            self.assertIn(words, printed)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         for settings, words in [(["lattice-angle=10,40", "--until=curve=20%"], "critical-angle=0.5"),

@@ -116,8 +116,8 @@ class Resumed(SweepTest):
         self.assertFalse((self.folder / "s.h5").exists())
 
     def hold_while_it_runs(self, ranks):
-        """Starts a sweep and stops its ranks. @return the sweep's process and the processes of the ranks, or nothing if
-        the sweep ended earlier"""
+        """Starts a sweep and stops its ranks. @return the sweep's process and the processes of the ranks; nothing if
+        the sweep ended before"""
         process = self.start(*SLOW, ranks=ranks)
 
         def runs():
@@ -240,9 +240,9 @@ class Resumed(SweepTest):
     def test_runs_that_only_the_journal_of_a_dead_sweep_has_are_counted(self):
         self.until_in_time(self.killed_behind_its_table)
         for command in (("clogsweep", "status", "s.h5"), ("clogfit", "s.h5")):
-            told = self.run_program(*command).stderr
-            self.assertRegex(told, r"s.h5: \d+ runs? ended that only the journal of the stopped sweep has; "
-                                   r"the sweep's own command adds (it|them)\n")
+            printed = self.run_program(*command).stderr
+            self.assertRegex(printed, r"s.h5: \d+ runs? ended that only the journal of the stopped sweep has; "
+                             r"the sweep's own command adds (it|them)\n")
         self.succeed("clogsweep", *SEVERAL_SLOW, ranks=2)
         self.assertNotIn("journal", self.run_program("clogsweep", "status", "s.h5").stderr)
         self.check_equal("s.h5", undisturbed(SEVERAL_SLOW))
@@ -465,7 +465,8 @@ class Resumed(SweepTest):
         failed = rows[rows.status == "failed"]
         self.assertGreater(len(failed), 0, done.stderr)
         self.assertEqual((set(failed.failed_by), set(failed.attempt)), ({"crossing"}, {1}))
-        # The crossing was seen at most 2112 steps, 13 t0, after the last sound check, in which droplets sink 0.4 sigma.
+        # The crossing was detected at most 2112 steps (13 t0) after the last sound check. In this time droplets sink by
+        # 0.4 sigma.
         apart = (failed.sound_distance - failed.distance).abs()
         self.assertTrue(((failed.sound_distance > 0) & (apart > 0) & (apart < 1)).all())
         self.assertNotIn("will be tried again", done.stderr)
@@ -483,8 +484,8 @@ class Resumed(SweepTest):
 
 
 class Batch(ProgramTest):
-    """Tests the scripts for batch systems. The commands of these systems are replaced by commands that only write down
-    how they were called."""
+    """Tests the scripts for batch systems. Other commands replace those of these systems, and only record their
+    arguments."""
 
     def script(self, name, *arguments, **environment):
         for command in ("scontrol", "qsub"):

@@ -1,5 +1,7 @@
 """Recomputes clogging lengths from the runs in docs/gallery/rows, and draws figures from such files."""
 
+import csv
+import json
 import math
 import subprocess
 import unittest
@@ -78,7 +80,7 @@ class Parts(test_figures.Drawn):
                          [24, 4, 0, 2])
         assert_fitted(self, sweep)
 
-        # From the rows, figures are those of the sweep itself, except groups of which runs are missing.
+        # Figures from the rows are those of the sweep itself. Groups with missing runs are an exception.
         sweep.fit["groups"][0]["planned"] = 7
         finished.write("clogging-sp", sweep, rows)
         self.draw("figures", "7a", "--from-rows", rows, "--output", ".", "--programs", BIN)
@@ -87,11 +89,32 @@ class Parts(test_figures.Drawn):
                          sorted([str(group[name]) for name in names] for group in sweep.fit["groups"][1:]))
         self.assertIn("6 of 7 runs", (self.folder / "full" / "figure-7a.txt").read_text())
 
-        # Figures whose sweep is not there are named.
+        # Figures without a sweep are named.
         options = ["--from-rows", rows, "--output", ".", "--programs", BIN]
         self.refuse_analysis("figures", "9a", *options, words=["speed-sp", "--size full"])
         for option in ("--draw-only", "--set=seeds=1"):
             self.refuse_analysis("figures", "7a", *options, option, words=["--from-rows", option.split("=")[0]])
+
+    def test_sizes_behind_an_array_are_those_of_clogfit_also_from_rows(self):
+        options = ["--output", ".", "--programs", BIN]
+        self.draw("figures", "sizes", *options, *test_figures.SET)
+        sweep = self.folder / "reduced" / "sweeps" / "families.h5"
+        groups = json.loads(self.succeed("clogfit", sweep, "--format", "json").stdout)["groups"]
+        drawn = (self.folder / "reduced" / "figure-sizes.csv").read_text()
+        points = list(csv.DictReader(drawn.splitlines()))
+        for group in groups:
+            line = next(line for line in group["families"]["lines"] if line["distance"] == float(points[0]["outlet"]))
+            mine = [float(point["number"]) for point in points
+                    if float(point["speed_exponent"]) == group["speed_exponent"]]
+            self.assertEqual(mine, line["passed"]["numbers"])
+            self.assertGreater(sum(mine), 1)
+        rows = self.folder / "rows"
+        rows.mkdir()
+        added = finished.add("families", [sweep], BIN, "a processor", rows)
+        self.assertEqual([len(added.rows), len(added.groups)], [4, 2])
+        assert_fitted(self, added)
+        self.draw("figures", "sizes", *options, "--from-rows", rows)
+        self.assertEqual((self.folder / "full" / "figure-sizes.csv").read_text(), drawn)
 
     def test_a_failed_run_is_not_counted_twice(self):
         # clogfit counts failed runs that are censored among `runs`.

@@ -39,7 +39,7 @@ class BreakUp(Analysis):
         super().setUp()
         (self.folder / "one.csv").write_text("x,y,diameter\n13,10.1,0.3\n")
 
-    def test_soft_droplets_break_and_are_told_of(self):
+    def test_soft_droplets_break_and_are_reported(self):
         self.succeed("clogsweep", *self.KEYS, "line-tension=0.03,0.05,0.07", "--output", "s.h5")
         rows = read_rows(self.folder / "s.h5")
         self.assertEqual([row.status for row in rows], ["broken", "broken", "flowing"])
@@ -115,7 +115,7 @@ class Channels(Analysis):
             fits = json.loads(self.succeed("clogfit", f"{key}.h5", "--format", "json").stdout)
             self.assertEqual([group[column] for group in fits["groups"]], [float(value) for value in values.split(",")])
 
-    def test_it_is_told_as_passages_not_as_lengths(self):
+    def test_it_is_printed_as_passages_not_as_lengths(self):
         self.succeed("clogsweep", *CHANNEL, "line-tension=0.3,5", "--output", "s.h5")
         text = self.succeed("clogfit", "s.h5").stdout
         self.assertIn("largest A", text)
@@ -213,14 +213,15 @@ class Channels(Analysis):
                              (parts.distance, parts.smallest_relative_speed, parts.largest_shape_parameter_at))
 
     def test_keys_without_effect_or_out_of_range_are_refused(self):
-        for words, told in [(["obstacle-gap=0.3"], ["obstacle-gap", "no array"]),
-                            (["seeds=1..5"], ["seeds=1..5", "nothing is random"]),
-                            (["obstacles=none", "box=20"], ["box", "no array"]),
-                            (["start=-0.1"], ["start", "clear of the wedges"]), (["end=-3"], ["end", "downstream"]),
-                            (["orifice=0"], ["orifice"])]:
+        for words, shown_text in [(["obstacle-gap=0.3"], ["obstacle-gap", "no array"]),
+                                  (["seeds=1..5"], ["seeds=1..5", "nothing is random"]),
+                                  (["obstacles=none", "box=20"], ["box", "no array"]),
+                                  (["start=-0.1"], ["start", "clear of the wedges"]),
+                                  (["end=-3"], ["end", "downstream"]),
+                                  (["orifice=0"], ["orifice"])]:
             names = [word.split("=")[0] for word in words]
             keys = [word for word in CHANNEL if word.split("=")[0] not in names]
-            self.refuse("clogsweep", *keys, "line-tension=1", *words, "--output", "s.h5", words=told)
+            self.refuse("clogsweep", *keys, "line-tension=1", *words, "--output", "s.h5", words=shown_text)
         self.refuse("clogsweep", "orifice=0.6", "obstacle-layout=random", "--output", "s.h5",
                     words=["orifice=0.6", "obstacle-layout=channel"])
         # The key `orifice` implies a channel.
@@ -233,8 +234,8 @@ class Channels(Analysis):
 class Walls(Analysis):
     def test_a_sweep_has_the_sags_that_clogrun_prints(self):
         keys = ["line-tension=0.1,1", "vertices=64"]
-        told = self.succeed("clogsweep", "obstacle-layout=wall", *keys, "--output", "s.h5").stderr
-        self.assertIn(" 2 at rest, 0 flowing, ", told)
+        shown_text = self.succeed("clogsweep", "obstacle-layout=wall", *keys, "--output", "s.h5").stderr
+        self.assertIn(" 2 at rest, 0 flowing, ", shown_text)
         printed = [line.split(",") for line in self.succeed("clogrun", "sag", *keys).stdout.splitlines()[1:]]
         rows = read_rows(self.folder / "s.h5")
         self.assertEqual([f"{row.sag:.6g}" for row in rows], [words[3] for words in printed])
@@ -242,8 +243,8 @@ class Walls(Analysis):
         self.assertIn("at rest", self.succeed("clogfit", "s.h5").stdout)
         status = self.succeed("clogsweep", "status", "s.h5").stdout
         self.assertIn("2 of 2 runs finished, 2 at rest, 0 flowing, 0 failed;", status)
-        told = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
-        self.assertEqual([told[name] for name in ("finished", "clogged", "at_rest")], [2, 0, 2])
+        shown_text = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
+        self.assertEqual([shown_text[name] for name in ("finished", "clogged", "at_rest")], [2, 0, 2])
         self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         for row in rows:
@@ -331,10 +332,10 @@ class OwnCircles(ProgramTest):
 
     def test_a_run_longer_than_its_circles_asks_for_a_longer_file(self):
         keys = [key for key in OWN if not key.startswith("max-time")]
-        told = self.succeed("clogsweep", *keys, "release=anywhere", "max-time=500", "--dry-run")
-        self.assertIn("give a file of circles that is as long", told.stdout + told.stderr)
+        shown_text = self.succeed("clogsweep", *keys, "release=anywhere", "max-time=500", "--dry-run")
+        self.assertIn("give a file of circles that is as long", shown_text.stdout + shown_text.stderr)
         self.assertNotIn("boxes=",
-                         (told.stdout + told.stderr).split("meet the same obstacles again")[1].splitlines()[0])
+                         (shown_text.stdout + shown_text.stderr).split("meet the same obstacles again")[1].splitlines()[0])
 
     def test_how_wide_their_array_is_has_to_be_said(self):
         self.refuse("clogsweep", "obstacles=posts.csv", "--output", "s.h5", words=["obstacles=posts.csv", "give box"])
@@ -343,9 +344,9 @@ class OwnCircles(ProgramTest):
         (self.folder / "posts.csv").write_text("x,y\n" + "".join(f"{i % 5 * 2},{i // 5 * 2}\n" for i in range(25)))
         wide = [*OWN, "obstacle-diameter=1.1"]
         self.assertNotIn("bare", self.succeed("clogsweep", *wide, "--dry-run").stdout)
-        told = self.succeed("clogsweep", *wide, "boxes=4", "--dry-run").stdout
-        self.assertIn("obstacles=posts.csv leaves x=", told)
-        self.assertNotIn("leaves y=", told)
+        shown_text = self.succeed("clogsweep", *wide, "boxes=4", "--dry-run").stdout
+        self.assertIn("obstacles=posts.csv leaves x=", shown_text)
+        self.assertNotIn("leaves y=", shown_text)
 
     def test_droplets_that_fall_through_a_lane_met_nothing(self):
         # Posts between two walls at y = 1 and 7, in a device of width 8. Behind the walls there is a lane of width 1.7.
@@ -353,8 +354,8 @@ class OwnCircles(ProgramTest):
         walls = [(0.53 * i % 16, y) for i in range(30) for y in (1, 7)] + [(1.0 + 2 * i, 0.5 * (i % 2) + y) for i in range(8) for y in (2, 3.1, 4.2, 5.3)]
         keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=4", "terminal-speed=0.1", "max-time=100", "seeds=1..12"]
         (self.folder / "walls.csv").write_text("x,y,diameter\n" + "".join(f"{x:.4f},{y},0.3\n" for x, y in walls))
-        told = self.succeed("clogsweep", "obstacles=walls.csv", *keys, "--dry-run").stdout
-        self.assertRegex(told, r"obstacles=walls.csv leaves y=7.15 to 8.85 bare, wider than a droplet")
+        shown_text = self.succeed("clogsweep", "obstacles=walls.csv", *keys, "--dry-run").stdout
+        self.assertRegex(shown_text, r"obstacles=walls.csv leaves y=7.15 to 8.85 bare, wider than a droplet")
         self.succeed("clogsweep", "obstacles=walls.csv", *keys, "--output", "s.h5")
         rows = read_rows(self.folder / "s.h5")
         for row in rows:
@@ -378,8 +379,8 @@ class OwnCircles(ProgramTest):
         keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=3", "terminal-speed=0.1", "max-time=150", "seeds=1..20"]
         for name, head, scale in (("walls.csv", "x,y,diameter\n", 1), ("um.csv", "# units=um droplet=200um\nx,y,diameter\n", 200)):
             (self.folder / name).write_text(head + "".join(f"{scale * x:.8g},{scale * y:.8g},{scale * 0.3:g}\n" for x, y in walls))
-            told = self.succeed("clogsweep", f"obstacles={name}", *keys, "--output", name + ".h5").stderr
-            self.assertIn("bare, wider than a droplet", told)
+            shown_text = self.succeed("clogsweep", f"obstacles={name}", *keys, "--output", name + ".h5").stderr
+            self.assertIn("bare, wider than a droplet", shown_text)
         rows, others = (table(self.folder / name) for name in ("walls.csv.h5", "um.csv.h5"))
         pandas.testing.assert_frame_equal(rows.drop(columns=TIMING), others.drop(columns=TIMING), check_exact=True)
         group, = json.loads(self.succeed("clogfit", "walls.csv.h5", "--format", "json").stdout)["groups"]
@@ -404,7 +405,7 @@ class OwnCircles(ProgramTest):
         self.assertEqual(len(fits["groups"]), 2)
         self.assertEqual(fits["lists"], ["obstacles"])
 
-    def test_ranks_and_helpers_are_told_of_them(self):
+    def test_ranks_and_helpers_receive_them(self):
         keys = [*OWN, "release=anywhere", "seeds=1..6"]
         self.succeed("clogsweep", *keys, "--output", "one.h5")
         self.succeed("clogsweep", *keys, "--isolate=no", "--output", "bare.h5")
@@ -420,9 +421,9 @@ class OwnCircles(ProgramTest):
         place = bytes(bytes_).index(np.array([3.4, 5.9, 0.2]).tobytes())
         bytes_[place + 3] ^= 4
         (self.folder / "s.h5").write_bytes(bytes_)
-        told = self.run_program("clogsweep", "verify", "s.h5")
-        self.assertEqual(told.returncode, 1)
-        self.assertIn("its obstacles", told.stdout)
+        shown_text = self.run_program("clogsweep", "verify", "s.h5")
+        self.assertEqual(shown_text.returncode, 1)
+        self.assertIn("its obstacles", shown_text.stdout)
         for command in (["clogfit", "s.h5"], ["clogsweep", "status", "s.h5"], ["clogsweep", *OWN, "--output", "s.h5"]):
             self.refuse(*command, words=["damaged"])
 
@@ -483,7 +484,7 @@ class RandomDevices(ProgramTest):
         self.assertGreater(self.num_across_border, 3)
 
     def test_no_droplet_starts_within_the_outline_of_a_post(self):
-        # A ring and a square of circles in rows, wide enough for a droplet, and a ring that is open.
+        # There are a ring and a square of circles in rows, both with room for a droplet inside, and an open ring.
         for model, more in self.KEYS.items():
             places = self.random.permutation([(3, 3), (3, 9), (9, 6)])
             ring, square, open_ring = places + self.random.uniform(-0.5, 0.5, 2)

@@ -12,7 +12,7 @@ from clogsweep import style
 from clogsweep.drawing import clogs, curve
 from clogsweep.labels.groups import Groups
 
-# Settings for two kinds of keys: keys that apply only to certain runs, and keys whose values are words, which take no
+# Settings for two kinds of keys: keys that apply only to certain runs, and keys with words as values, which take no
 # list
 SURROUNDINGS = {
     "lattice-angle": ["obstacle-layout=lattice", "box=60", "obstacle-gap=0.5"],
@@ -38,7 +38,8 @@ VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": 
           "time-step": "1e-3,2e-3", "area-stiffness": "5000,6000", "perimeter-stiffness": "0.05,0.1",
           "perimeter-stiffness-ratio": "0.1,0.2", "contact-range": "0,0.01", "wall-tension": "0.5,1",
           "receding-angle": "120,150", "advancing-angle": "130,150", "friction": "0.1,0.2", "yield-traction": "0.05,0.1",
-          "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16", "dwell-length": "0.04,0.05", "break-up-neck": "0,0.05",
+          "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16", "dwell-length": "0.04,0.05",
+          "break-up-neck": "0,0.05", "smallest-daughter": "0.2,0.3", "speed-exponent": "0,1",
           "obstacles": "one.csv,other.csv", "length": "12,15", "entrance": "2,3", "entrance-from": "1,2", "entrance-to": "8,9",
           "exit": "8,9",
           "laboratory": "angle = 20 deg; diameter = 1 mm; speed = 1 mm/s,angle = 20 deg; diameter = 2 mm; "

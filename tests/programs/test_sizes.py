@@ -101,8 +101,8 @@ class Sizes(LaboratoryTest):
         self.assertEqual(rows.laboratory.nunique(), 4)
 
     def test_keys_in_laboratory_units_are_converted_for_one_droplet_too(self):
-        told = self.sweep("line-tension=lin(2mN/m,4mN/m,3)", "obstacle-gap=320 um, 0.45sigma,0.6", "box=0.96cm", "max-time=4s", "--print-config", diameter="0.8 mm", angle="20 deg").stdout
-        config = dict(line.split(" = ") for line in told.splitlines() if " = " in line and not line.startswith(("#", "laboratory")))
+        printed = self.sweep("line-tension=lin(2mN/m,4mN/m,3)", "obstacle-gap=320 um, 0.45sigma,0.6", "box=0.96cm", "max-time=4s", "--print-config", diameter="0.8 mm", angle="20 deg").stdout
+        config = dict(line.split(" = ") for line in printed.splitlines() if " = " in line and not line.startswith(("#", "laboratory")))
         gamma = 0.3 * 2e-3 / (703 * 0.8e-3**2 * GRAVITY * sine(20))
         first, last, count = config["line-tension"].removeprefix("lin(").removesuffix(")").split(",")
         np.testing.assert_allclose([float(first), float(last), float(count)], [gamma, 2 * gamma, 3], rtol=1e-9)
@@ -218,7 +218,7 @@ class Sizes(LaboratoryTest):
         self.assertEqual(len(self.fit("s.h5")["groups"]), len(SETS))
 
     def test_laboratories_with_the_same_runs_share_them(self):
-        # Tilts differ, but no run depends on them.
+        # Tilts differ, but runs do not depend on them.
         keys = ["line-tension=0.5", "terminal-speed=0.03", "obstacle-gap=0.4sigma", "vertices=64", "box=20sigma", "max-time=40", "seeds=1..2"]
         self.sweep(*keys, diameter="0.8 mm", angle="20 deg")
         before = table(self.folder / "s.h5")
@@ -233,21 +233,21 @@ class Sizes(LaboratoryTest):
         keys = ["line-tension=0.5", "terminal-speed=0.03", "obstacle-gap=0.4sigma", "vertices=64", "box=20sigma", "max-time=40"]
 
         def sweep(*options, output, ranks=None):
-            told = self.sweep(*keys, *options, output=output, diameter="0.8 mm", angle="20 deg, 45 deg",
-                              ranks=ranks).stderr
+            printed = self.sweep(*keys, *options, output=output, diameter="0.8 mm", angle="20 deg, 45 deg",
+                                 ranks=ranks).stderr
             rows = table(self.folder / output)
             per_seed = rows.groupby("seed")
             self.assertTrue((per_seed.laboratory.nunique() == 2).all())
             self.assertTrue((per_seed[["distance", "time"]].nunique() == 1).all(axis=None), "one computation")
             costs = per_seed.wall_seconds
             self.assertTrue(((costs.min() == 0) & (costs.max() > 0)).all(), "a copy costs nothing")
-            return told, rows
+            return printed, rows
 
-        told = self.sweep(*keys, "seeds=1..3", "--dry-run", diameter="0.8 mm", angle="20 deg, 45 deg").stdout
-        self.assertIn("# 3 tasks are the same runs in another laboratory, which are computed once", told)
-        told, rows = sweep("seeds=1..3", output="new.h5", ranks=3)
-        self.assertIn("3 runs on 3 computing ranks", told)
-        self.assertIn("3 more runs are the same in another laboratory and get these results", told)
+        printed = self.sweep(*keys, "seeds=1..3", "--dry-run", diameter="0.8 mm", angle="20 deg, 45 deg").stdout
+        self.assertIn("# 3 tasks are the same runs in another laboratory, which are computed once", printed)
+        printed, rows = sweep("seeds=1..3", output="new.h5", ranks=3)
+        self.assertIn("3 runs on 3 computing ranks", printed)
+        self.assertIn("3 more runs are the same in another laboratory and get these results", printed)
         self.assertEqual(len(rows), 6)
         self.assertIn("there is nothing left to do", sweep("seeds=1..3", output="new.h5")[0])
         self.assertIn("new.h5 has all 3 runs", self.sweep(*keys, "seeds=1..3", "--dry-run", output="new.h5", diameter="0.8 mm",
@@ -324,9 +324,9 @@ class Sizes(LaboratoryTest):
             self.write("own.csv", f"distance [mm],clogged,{diameter},{angle}\n3,1,{1.6 * factor},20\n5,1,{1.6 * factor},20\n4,0,{0.8 * factor},45\n")
             found = json.loads(self.succeed("clogfit", "compare", "own.csv", "s.h5", "--format", "json").stdout)
             self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
-            # These follow from the droplet, so they would only widen the table.
+            # These parameters follow from the droplet, so they would only widen the table.
             self.assertFalse({"laboratory", "line_tension", "obstacle_gap"} & set(found["comparisons"][0]))
-        # Friction that differs between the sizes does not follow from them.
+        # Friction that differs between the sizes does not follow from the sizes.
         for size, friction in [("0.8 mm", "0"), ("1.6 mm", "0.3")]:
             self.sweep(*ARRAY, "preset=elastic", f"friction={friction}", output=f"{friction}.h5", diameter=size,
                        angle="20 deg")
@@ -347,23 +347,23 @@ class Sizes(LaboratoryTest):
 
     def test_sweeps_are_compared_in_millimetres_with_the_same_droplet(self):
         self.sweep(*ARRAY, "preset=elastic", "friction=0,0.3", output="f.h5")
-        told = json.loads(self.succeed("clogfit", "compare", "f.h5", "--by", "friction", "--format", "json").stdout)
-        self.assertEqual((told["columns"], told["differing"]), (["diameter", "angle"], ["friction"]))
+        printed = json.loads(self.succeed("clogfit", "compare", "f.h5", "--by", "friction", "--format", "json").stdout)
+        self.assertEqual((printed["columns"], printed["differing"]), (["diameter", "angle"], ["friction"]))
         lengths_in_mm = {(one["diameter_mm"], one["angle_degrees"], one["friction"]): one["clogging_length_lower_mm"]
                          for one in self.fit("f.h5")["groups"]}
-        self.assertEqual(len(told["comparisons"]), len(SETS))
-        for one in told["comparisons"]:
+        self.assertEqual(len(printed["comparisons"]), len(SETS))
+        for one in printed["comparisons"]:
             for side, friction in [("here", 0.3), ("there", 0)]:
                 self.assertAlmostEqual(one[f"clogging_length_{side}_lower_mm"], lengths_in_mm[one["diameter"], one["angle"], friction])
-        figure = style.figure_of(ratios.draw_on, {**told, "comparisons": [one | {"ratio": 1, "ratio_lower": 0.5, "ratio_upper": 2} for one in told["comparisons"]]})
+        figure = style.figure_of(ratios.draw_on, {**printed, "comparisons": [one | {"ratio": 1, "ratio_lower": 0.5, "ratio_upper": 2} for one in printed["comparisons"]]})
         self.assertEqual(figure.axes[0].get_xlabel(), "diameter of the droplet [mm]")
         self.assertEqual({text.get_text() for text in figure.axes[0].get_legend().get_texts()},
                          {"tilt 20°", "tilt 45°"})
         # Droplets of the same size and tilt may differ in their tension.
         self.sweep()
         self.sweep(*ARRAY, output="softer.h5", tension="1 mN/m")
-        told = json.loads(self.succeed("clogfit", "compare", "s.h5", "softer.h5", "--format", "json").stdout)
-        self.assertEqual((told["columns"], len(told["comparisons"])), (["diameter", "angle"], len(SETS)))
+        printed = json.loads(self.succeed("clogfit", "compare", "s.h5", "softer.h5", "--format", "json").stdout)
+        self.assertEqual((printed["columns"], len(printed["comparisons"])), (["diameter", "angle"], len(SETS)))
 
     def test_figures_show_millimetres_over_the_diameter_and_a_curve_for_each_tilt(self):
         self.sweep()
@@ -372,7 +372,7 @@ class Sizes(LaboratoryTest):
         self.assertEqual(groups.axis_label(), "diameter of the droplet [mm]")
         self.assertEqual(groups.values("obstacle_gap"), {0.4})
         self.assertEqual(groups.values("obstacle_density"), {0.8})
-        self.assertRegex(groups.caption(), r"/\\mathrm\{mm\} = 0.4\$.*\\mathrm\{mm\}\^2 = 0.8\$")
+        self.assertRegex(groups.caption(), r"gap \$0.4.*mm.*density \$0.8/.*mm.*\^2\$")
         axes = style.figure_of(lengths.draw_on, groups).axes[0]
         self.assertEqual(axes.get_ylabel(), r"$\lambda$ [mm]")
         bound = max(group["clogging_length_lower_mm"] for group in groups.members if group["clogs"] == 0)
@@ -388,7 +388,7 @@ class Sizes(LaboratoryTest):
         for point in found["curves"][0]["points"]:
             self.assertAlmostEqual(point["total_distance"], point["diameter_mm"] * groups[point["diameter_mm"]]["total_distance"])
         self.assertEqual(json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)["keys"], found["keys"])
-        # The same laboratory in other words is one curve, with the same points.
+        # The same laboratory in other words gives the same curve, with the same points.
         self.assertIn("nothing left to do",
                       self.sweep(*keys, diameter="800 um, 1.0 mm, 1200 um, 0.16 cm", angle="20.0 deg").stderr)
         again = json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)
@@ -422,7 +422,7 @@ class Sizes(LaboratoryTest):
 
     def test_a_lattice_is_drawn_over_the_diameter_with_the_tangent_of_its_rows(self):
         lattice = ["obstacle-layout=lattice", *ARRAY[:2], "vertices=64", "box=15", "max-time=40", "seeds=1"]
-        # In this box, lattices for the two droplets can be at 14.93 and 15.07 degrees.
+        # Lattices for the two droplets fit this box at 14.93 and at 15.07 degrees.
         for name, angles, tangents in [("tilted", "15", [2 - math.sqrt(3)]),
                                        ("both", "lin(0,15,2)", [2 - math.sqrt(3)]), ("straight", "0", [])]:
             with self.subTest(name):
@@ -533,7 +533,7 @@ class Mixtures(LaboratoryTest):
 
     @staticmethod
     def outcomes(diameter, seed):
-        """The droplets of a seed go about equally far, in units of their mean distance."""
+        """The droplets of a seed travel about equally far, in units of their mean distances."""
         common, own = np.random.default_rng(seed).exponential(), np.random.default_rng([seed, int(10 * diameter)]).random()
         way = {0.8: 4, 1.6: 9}[diameter] * (common + 0.1 * own)
         if seed in (3, 55):
@@ -561,7 +561,8 @@ class Mixtures(LaboratoryTest):
         return runs.sort_values(["way", "clogged"], ascending=[True, False])
 
     def estimates(self, runs, times, places):
-        """Length and P(r) of resamples. @param times  how often each seed counts: by seed, a number for each resample"""
+        """Length and P(r) of resamples. @param times  by seed: for each resample, the number of times that the seed
+        counts"""
         way = clogs = probability = 0
         for size, share in self.SHARES.items():
             own = self.in_order(runs[runs["size"] == size])
@@ -578,7 +579,7 @@ class Mixtures(LaboratoryTest):
         return way / clogs, probability
 
     def resampled(self, runs, places):
-        """The same for 8000 resamples of seeds."""
+        """Length and P(r) of 8000 resamples of seeds."""
         strata = {}
         for seed, own in runs.groupby("seed"):
             strata.setdefault(tuple(sorted(own["size"])), []).append(seed)
@@ -590,41 +591,41 @@ class Mixtures(LaboratoryTest):
 
     def check(self, *files):
         """Compares clogfit's mixture with numpy. @return the mixture"""
-        told = self.fit(*files, *self.MIXTURE)["mixture"]
+        printed = self.fit(*files, *self.MIXTURE)["mixture"]
         runs = self.observed(*files)
-        self.assertEqual((told["column"], told["unit"]), ("diameter", "mm"))
-        self.assertEqual(list(told["weights"]), ["0.8 mm", "1.6 mm"])
-        np.testing.assert_allclose(list(told["weights"].values()), [0.3, 0.7])
+        self.assertEqual((printed["column"], printed["unit"]), ("diameter", "mm"))
+        self.assertEqual(list(printed["weights"]), ["0.8 mm", "1.6 mm"])
+        np.testing.assert_allclose(list(printed["weights"].values()), [0.3, 0.7])
         last = [self.in_order(own).iloc[-1] for _, own in runs.groupby("size")]
         end = min((one.way for one in last if not one.clogged), default=np.inf) * (1 + 1e-12)
         known = runs[runs.way <= end]
-        places = np.array([step["distance"] for step in told["survival"]])
+        places = np.array([step["distance"] for step in printed["survival"]])
         np.testing.assert_allclose(places, np.unique(known.way[known.clogged]), rtol=1e-12)
-        np.testing.assert_allclose(told["censored_distances"], np.sort(known.way[~known.clogged]), rtol=1e-12)
+        np.testing.assert_allclose(printed["censored_distances"], np.sort(known.way[~known.clogged]), rtol=1e-12)
         length, probability = self.estimates(runs, {seed: np.array([1]) for seed in runs.seed}, places)
-        self.assertAlmostEqual(told["clogging_length"] / length[0], 1, places=12)
-        np.testing.assert_allclose([step["probability"] for step in told["survival"]], probability[0], rtol=1e-12)
+        self.assertAlmostEqual(printed["clogging_length"] / length[0], 1, places=12)
+        np.testing.assert_allclose([step["probability"] for step in printed["survival"]], probability[0], rtol=1e-12)
         # Each limit of 2000 resamples has a standard error of 0.06 standard deviations.
         lengths, probabilities = self.resampled(runs, places)
-        np.testing.assert_allclose([told["clogging_length_lower"], told["clogging_length_upper"]],
+        np.testing.assert_allclose([printed["clogging_length_lower"], printed["clogging_length_upper"]],
                                    np.percentile(lengths, [2.5, 97.5]), rtol=0, atol=0.25 * lengths.std())
         for name, percentile in (("lower", 2.5), ("upper", 97.5)):
-            limits = np.array([step[name] for step in told["survival"]])
+            limits = np.array([step[name] for step in printed["survival"]])
             difference = np.abs(limits - np.percentile(probabilities, percentile, axis=0))
             # The steps of P(r) are 0.3 and 0.7 of a fortieth.
             self.assertLess(np.max(difference - 0.25 * probabilities.std(axis=0)), 0.7 / 40)
-        return told
+        return printed
 
     def test_a_mixture_has_the_length_the_curve_and_the_intervals_of_numpy(self):
         self.rows("both.h5", "1..40", "0.8 mm, 1.6 mm", self.outcomes)
         shared = self.check("both.h5")
-        # The runs of a seed go about equally far. With the same outcomes for other seeds, these chances are
-        # independent, so the interval is narrower.
+        # The runs of a seed travel about equally far. If the outcomes are assigned to other seeds, chance acts on both
+        # groups independently, so the interval is narrower.
         self.rows("small.h5", "1..40", "0.8 mm", self.outcomes)
         self.rows("large.h5", "101..140", "1.6 mm", lambda diameter, seed: self.outcomes(diameter, seed - 100))
         disjoint = self.check("small.h5", "large.h5")
         self.assertAlmostEqual(disjoint["clogging_length"], shared["clogging_length"])
-        wide, narrow = (told["clogging_length_upper"] - told["clogging_length_lower"] for told in (shared, disjoint))
+        wide, narrow = (printed["clogging_length_upper"] - printed["clogging_length_lower"] for printed in (shared, disjoint))
         self.assertGreater(wide, 1.15 * narrow)
         # Ten of the seeds are shared.
         self.rows("later.h5", "31..70", "1.6 mm", self.outcomes)
@@ -635,7 +636,7 @@ class Mixtures(LaboratoryTest):
                                r"lambda = [0-9.]+ \([0-9.]+ \.\. [0-9.]+\) mm, 95 %\n$")
         half = self.fit("both.h5", *self.MIXTURE, "--confidence", "0.5")["mixture"]
         self.assertLess(half["clogging_length_upper"] - half["clogging_length_lower"], wide / 2)
-        # A share of 1 is the group itself.
+        # A share of 1 gives the results of the group itself.
         pure = self.fit("both.h5", "--mixture", "diameter=0.8mm:1,1.6mm:0")
         group = next(group for group in pure["groups"] if group["diameter_mm"] == 0.8)
         self.assertAlmostEqual(pure["mixture"]["clogging_length"], group["clogging_length_mm"], places=12)
@@ -661,13 +662,13 @@ class Mixtures(LaboratoryTest):
         rows = table(path)
         others = {"status": b"flowing", "clogged_by": b"none", "mechanism": b"none"}
         stored_rows.change_columns(path, **{name: np.where(rows.seed <= 2, word, others[name]) for name, word in self.CLOG.items()})
-        told = self.fit("s.h5", *self.TENSIONS)["mixture"]
+        printed = self.fit("s.h5", *self.TENSIONS)["mixture"]
         ways = [rows.distance[rows.line_tension == tension].mean() for tension in (0.5, 1)]
-        self.assertEqual((told["column"], told["unit"]), ("line_tension", "sigma"))
-        self.assertEqual(told["weights"], {"0.5": 0.25, "1": 0.75})
-        self.assertAlmostEqual(told["clogging_length"], (ways[0] + 3 * ways[1]) / 4 / 0.5)
+        self.assertEqual((printed["column"], printed["unit"]), ("line_tension", "sigma"))
+        self.assertEqual(printed["weights"], {"0.5": 0.25, "1": 0.75})
+        self.assertAlmostEqual(printed["clogging_length"], (ways[0] + 3 * ways[1]) / 4 / 0.5)
         # A sixteenth of the resamples has no clog.
-        self.assertIsNone(told["clogging_length_upper"])
+        self.assertIsNone(printed["clogging_length_upper"])
         self.assertIn(" (above ", self.succeed("clogfit", "s.h5", *self.TENSIONS).stdout)
         one = self.copy_sweep("one.h5", *SMALL, *self.FAR, "line-tension=0.5,1", "seeds=1")
         stored_rows.change_columns(one, distance=[1, 2], **self.CLOG)

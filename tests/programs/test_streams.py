@@ -102,14 +102,14 @@ class Streams(SweepTest):
         self.write("s.cfg", "\x1b]0;title\x07 = 3\n")
         self.refuse("clogsweep", "--config", "s.cfg", words=["\\x1b]0;title\\x07"])
         name = "\x1b[2J.h5"
-        told = self.succeed("clogsweep", *SMALL_SWEEP[:-1], name).stderr
-        told += self.succeed("clogsweep", "status", name).stdout + self.succeed("clogsweep", "verify", name).stdout
-        self.assertNotIn("\x1b", told)
-        self.assertEqual(told.count("\\x1b[2J.h5"), 3)
+        printed = self.succeed("clogsweep", *SMALL_SWEEP[:-1], name).stderr
+        printed += self.succeed("clogsweep", "status", name).stdout + self.succeed("clogsweep", "verify", name).stdout
+        self.assertNotIn("\x1b", printed)
+        self.assertEqual(printed.count("\\x1b[2J.h5"), 3)
         for words in (["--examples", "\x1b[31m\x07"], ["--b\x1bus"], ["--output", "\x1b/r.html"]):
-            told = self.run_program("clogfit", "report", name, *words).stderr
-            self.assertIn("\\x1b", told)
-            self.assertNotIn("\x1b", told)
+            printed = self.run_program("clogfit", "report", name, *words).stderr
+            self.assertIn("\\x1b", printed)
+            self.assertNotIn("\x1b", printed)
 
     def test_long_words_are_cut(self):
         self.write("long.cfg", "k" * 5_000_000 + " = 3\n")

@@ -1,5 +1,5 @@
-"""Tests that no line of a user's table is lost or misread in silence. The properties hold for each program that reads
-tables."""
+"""Tests that no line of a user's table is lost or misread without a message. Each property holds for every program that
+reads tables."""
 
 import re
 import unittest
@@ -22,8 +22,8 @@ SEPARATORS = [",", ";", "\t", " "]
 OWN = ["box=10", "vertices=64", "max-time=60", "--dry-run"]
 
 
-def without_costs(told):
-    return [line for line in told.splitlines() if "core-hours" not in line]
+def without_costs(printed):
+    return [line for line in printed.splitlines() if "core-hours" not in line]
 
 
 class Tables(Analysis):
@@ -47,8 +47,9 @@ class Tables(Analysis):
         self.write("good.csv", "h [sigma],v [v_t],A\n-1,1,1\n0,1,1\n1,1,1\n")
 
     def broken_tables(self, name):
-        """Writes tables with each error of a spreadsheet in the first cell of a line, which is the most dangerous one
-        because lines that begin with # are comments, and in a later cell. @return the beginning of each message"""
+        """Writes tables with each error of a spreadsheet in the first cell of a line, and in a later cell. In the first
+        cell an error is most dangerous, because lines that begin with # are comments. @return the beginning of each
+        message"""
         _, head, lines = self.READERS[name]
         for number, error in enumerate(ERRORS):
             separator = SEPARATORS[number % len(SEPARATORS)] if name not in ("angles", "passage") else ","
@@ -87,12 +88,12 @@ class Tables(Analysis):
             for message in self.broken_tables(name):
                 with self.assertRaisesRegex(UserError, re.escape(message)):
                     read()
-            # The command uses this reader.
+            # The command uses the same reader.
             done = self.analyse(*command)
             self.assertEqual((done.returncode, message in done.stderr), (2, True), done.stderr)
 
     def test_two_columns_of_one_quantity_are_refused_with_their_names_and_the_line(self):
-        # The second column follows its twin or comes last, with the same unit or another.
+        # The second of two equal columns follows the first or comes last, with the same unit or another.
         for name, read in self.readers_in_python().items():
             _, head, lines = self.READERS[name]
             for column, title in enumerate(head[:3]):
@@ -128,7 +129,7 @@ class Tables(Analysis):
                 continue  # These are CSV files with commas between the cells.
             columns = [column for column, title in enumerate(head) if title not in ("clogged", "wall", "seeds")]
             for one, other in (("0,5", "1.5"), ("1.5", "0,5")):
-                # In one column, in two columns, and in one line.
+                # The two errors are in one column, in two columns, and in one line.
                 for first, second in (((0, columns[0]), (2, columns[0])), ((0, columns[0]), (1, columns[1 % len(columns)])), ((1, columns[0]), (1, columns[-1]))):
                     if first == second:
                         continue
@@ -156,10 +157,10 @@ class Tables(Analysis):
                 self.table(separator, [head, *lines])
                 expected = self.call(command)
                 self.table(separator, [*([comment] for comment in comments), head, lines[0], *([comment] for comment in comments), *lines[1:]])
-                told = self.call(command)
+                printed = self.call(command)
                 with self.subTest(reader=name, separator=separator):
-                    self.assertEqual((told.returncode, without_costs(told.stdout)),
-                                     (expected.returncode, without_costs(expected.stdout)), told.stderr)
+                    self.assertEqual((printed.returncode, without_costs(printed.stdout)),
+                                     (expected.returncode, without_costs(expected.stdout)), printed.stderr)
 
 
 class Units(ProgramTest):
@@ -213,7 +214,7 @@ class Points(ProgramTest):
             self.assertIn("# 4 tasks: 4 parameter sets", blank)
             self.assertEqual([line for line in blank.splitlines() if not line.startswith("#")],
                              [line for line in quoted.splitlines() if not line.startswith("#")])
-        # Two missing values are the same run twice.
+        # Two points with missing values would be the same run.
         self.refuse("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", "\n".join([head, *cells]) + "\n"),
                     "--dry-run", words=["point 2 and point 4", "the same run"])
         # In a table of several columns, a blank line is no row.
@@ -221,13 +222,13 @@ class Points(ProgramTest):
 
     def test_decimal_commas_with_units_are_those_of_decimal_points(self):
         self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n")
-        told = {}
+        printed = {}
         for name, text in (("point", "obstacle-diameter;seeds\n0.4mm;1\n0.8 mm;2\n1.5e3um;3\n"),
                            ("comma", "obstacle-diameter;seeds\n0,4mm;1\n0,8 mm;2\n1,5e3um;3\n")):
             self.write("p.csv", text)
-            told[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
-                                      "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
-        self.assertEqual(told["comma"], told["point"])
+            printed[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
+                                         "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
+        self.assertEqual(printed["comma"], printed["point"])
         self.refuse("clogsweep", "box=20", "obstacle-gap=0.4", "--lab", "lab.cfg", "--points",
                     self.write("p.csv", "obstacle-diameter;seeds\n1,350mm;1\n"), "--dry-run",
                     words=["'1,350'", "thousands"])

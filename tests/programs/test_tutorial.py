@@ -1,5 +1,5 @@
-"""Runs commands on pages of the handbook with fewer seeds and shorter runs. So it tests that the programs and the
-module know the keys and options of these commands.
+"""Runs commands on pages of the handbook with fewer seeds and shorter runs. This tests that the programs and the module
+know the keys and options of these commands.
 
 slow_tutorial runs the commands without changes, and tests what they print and draw.
 """

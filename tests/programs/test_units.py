@@ -25,7 +25,7 @@ from clogsweep.tools import rounded  # noqa: E402
 ARTICLE = [("3.5 mm", "28 deg", "7 mm/s", (0.08, 0.006), (0.57, 0.01)),
            ("1.98 mm", "8.5 deg", "0.97 mm/s", (0.028, 5e-4), (5.80, 0.07)),
            ("3.30 mm", "5.0 deg", "1.1 mm/s", (0.032, 5e-4), (3.47, 0.05))]
-FITTED = [0.16, 1.7, 1.08]  # Gamma* of these three droplets in the article.
+FITTED = [0.16, 1.7, 1.08]  # Gamma* of these three droplets in the article (Cheng et al.).
 TENSION = "9.6 mN/m"  # The article states "about 10 mJ/m^2". This value gives the printed Gamma_exp.
 
 
@@ -50,14 +50,15 @@ class Units(ProgramTest):
         lab = self.lab(thickness="0.4 mm")
         there = self.units(lab)
         self.assertAlmostEqual(there["line_tension_of_cell_uN"], 9.6 * 0.4, places=9)
+        self.assertAlmostEqual(there["break_up_neck"], 0.4 / 3.5, places=9)
         back = self.units(lab, "--line-tension", there["line_tension"], "--terminal-speed", there["terminal_speed"],
                           "--wall-stiffness", there["wall_stiffness"], "--length", 24, "--time", 1000)["given"]
         for name, value in (("tension_mN_per_m", 9.6), ("angle_degrees", 28), ("speed_mm_per_s", 7), ("length_mm", 84),
                             ("line_tension_of_equal_sag", there["line_tension"]), ("time_s", 1000 * there["time_s"])):
             self.assertAlmostEqual(back[name] / value, 1, places=6, msg=name)
-        told = self.succeed("clogfit", "units", lab, "--length", 24).stdout
-        self.assertRegex(told, r"(?m)^length +84\.0 mm +r/sigma = 24\.0$")
-        self.assertRegex(told, r"(?m)^interfacial tension +9\.60 mN/m +Gamma_exp = 0\.5\d+$")
+        printed = self.succeed("clogfit", "units", lab, "--length", 24).stdout
+        self.assertRegex(printed, r"(?m)^length +84\.0 mm +r/sigma = 24\.0$")
+        self.assertRegex(printed, r"(?m)^interfacial tension +9\.60 mN/m +Gamma_exp = 0\.5\d+$")
 
     def test_lists_are_converted_one_by_one(self):
         lab = self.lab()
@@ -71,10 +72,10 @@ class Units(ProgramTest):
         self.assertAlmostEqual(given["angle_degrees"][1], 24.0, delta=0.5)
         self.assertEqual(clogsweep.units(self.folder / lab, length=[2, 3], folder=BIN)["given"]["length_mm"], [7.0, 10.5])
         # Between upright plates this droplet has Gamma = 0.0815. At any other tilt Gamma is larger.
-        told = self.succeed("clogfit", "units", lab, "--line-tension", "0.05,0.2").stdout
-        self.assertRegex(told,
+        printed = self.succeed("clogfit", "units", lab, "--line-tension", "0.05,0.2").stdout
+        self.assertRegex(printed,
                          r"(?m)^or tilt with this tension +none: even upright, Gamma is 0\.0815 +Gamma = 0\.0500$")
-        self.assertRegex(told, r"(?m)^or tilt with this tension +2\d\.\d deg +Gamma = 0\.200$")
+        self.assertRegex(printed, r"(?m)^or tilt with this tension +2\d\.\d deg +Gamma = 0\.200$")
         self.write("no-tension.cfg", "diameter = 3.5 mm\nangle = 28 deg\n")
         self.assertIn("not known without tension in lab.cfg",
                       self.succeed("clogfit", "units", "no-tension.cfg", "--line-tension", 0.2).stdout)
@@ -89,12 +90,12 @@ class Units(ProgramTest):
     def test_a_nearly_rigid_droplet_gets_advice(self):
         self.assertNotIn("rigid", self.succeed("clogfit", "units", self.lab()).stdout)
         lab = self.lab("200 um", "90 deg", "1 mm/s", "20 mN/m", "stiff.cfg")
-        told = self.succeed("clogfit", "units", lab).stdout
-        self.assertIn("Gamma = 52.", told)
-        self.assertIn("line-tension=30.0 clogs in the same places", told)
+        printed = self.succeed("clogfit", "units", lab).stdout
+        self.assertIn("Gamma = 52.", printed)
+        self.assertIn("line-tension=30.0 clogs in the same places", printed)
         # Droplets of both models clog in the same places.
         common = ["obstacle-density=0.35", "obstacle-gap=0.2", "box=20", "max-time=1500", "seeds=1"]
-        disk, = re.findall(r"model=sp wall-stiffness=\S*\d", told)
+        disk, = re.findall(r"model=sp wall-stiffness=\S*\d", printed)
         ways = []
         for number, keys in enumerate((["line-tension=52", "vertices=64"], ["line-tension=30", "vertices=64"], disk.split())):
             self.succeed("clogsweep", *common, *keys, "--output", f"{number}.h5")
@@ -125,7 +126,7 @@ class Units(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads(done.stdout), 2 * [self.units(lab, "--length", 2)])
 
-    def test_a_sweep_of_a_laboratory_is_told_in_its_units(self):
+    def test_a_sweep_of_a_laboratory_is_printed_in_its_units(self):
         lab = self.lab()
         known = self.units(lab)
         self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..4", "--output", "s.h5")
@@ -160,18 +161,18 @@ class Units(ProgramTest):
         self.assertEqual((json.loads(done.stdout)["laboratory"], done.stderr), (before["laboratory"], ""))
 
     def test_speeds_are_those_of_the_runs(self):
-        # The laboratory's droplet falls at 30 mm/s; the runs have another speed.
+        # The laboratory's droplet falls at 30 mm/s. The runs have another speed.
         self.lab(speed="30 mm/s")
         for keys, speed in ((["--lab", "lab.cfg",
                               "terminal-speed=1mm/s"], 1), ([], 0.03 * 3.5 / self.units("lab.cfg")["time_s"])):
             self.succeed("clogsweep", *keys, "line-tension=5", "obstacle-gap=1", "vertices=64", "box=20",
                          "max-time=600", "seeds=1..4", "--output", f"{len(keys)}.h5")
-            told = self.succeed("clogfit", f"{len(keys)}.h5", "--lab", "lab.cfg", "--format", "json")
-            group, = json.loads(told.stdout)["groups"]
+            printed = self.succeed("clogfit", f"{len(keys)}.h5", "--lab", "lab.cfg", "--format", "json")
+            group, = json.loads(printed.stdout)["groups"]
             for name, model in (("speed_mm_per_s", "relative_speed_all"), ("speed_error_mm_per_s", "relative_speed_all_error")):
                 self.assertAlmostEqual(group[name] / (speed * group[model]), 1, places=3)
-            self.assertIn("those of runs with a terminal speed of", told.stderr)
-            self.assertIn("that of the laboratory's description is 30 mm/s", told.stderr)
+            self.assertIn("those of runs with a terminal speed of", printed.stderr)
+            self.assertIn("that of the laboratory's description is 30 mm/s", printed.stderr)
         run = self.succeed("clogrun", "array", "--lab", "lab.cfg", "terminal-speed=1mm/s", *QUICK, "seeds=1",
                            "--output", "r.h5").stdout
         time, = re.findall(r"t = ([-0-9.e]+) t0", run)
@@ -190,7 +191,7 @@ class Units(ProgramTest):
         for name, value in known.items():
             if isinstance(value, float):
                 self.assertEqual(value, float(f"{value:.12g}"), name)
-        # Runs have a Gamma of four digits.
+        # Runs have a Gamma that is rounded to four digits.
         self.succeed("clogsweep", "--lab", "lab.cfg", *QUICK, "seeds=1", "--output", "s.h5")
         group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
         self.assertEqual((group["tension_mN_per_m"], group["angle_degrees"]), (3, 30))
@@ -211,8 +212,8 @@ class Units(ProgramTest):
         for name, model in (("line_tension", "dp"), ("wall_stiffness", "sp")):
             self.assertEqual(pointed[name][model], rows[name][model])
         self.write("p.csv", 'model\n"dp, sp"\n')
-        told = self.succeed("clogsweep", "--lab", "lab.cfg", "--points", "p.csv", "box=20", "max-time=20", "seeds=1", "--dry-run").stdout
-        self.assertIn("2 parameter sets", told)
+        printed = self.succeed("clogsweep", "--lab", "lab.cfg", "--points", "p.csv", "box=20", "max-time=20", "seeds=1", "--dry-run").stdout
+        self.assertIn("2 parameter sets", printed)
 
     def test_points_with_units_are_named_with_their_line(self):
         lab = self.lab()
@@ -237,11 +238,11 @@ class Units(ProgramTest):
             self.assertAlmostEqual(group["tension_mN_per_m"], 10, delta=0.01)
         self.assertEqual(len({group["laboratory"] for group in groups}), 2)
 
-    def test_droplets_of_two_laboratories_are_told_each_in_its_own_units(self):
+    def test_droplets_of_two_laboratories_are_printed_each_in_its_own_units(self):
         files = self.sweeps_of_two_droplets()
         self.check_two_droplets(*files)
-        told = self.succeed("clogfit", *files).stdout
-        self.assertRegex(told, r"diameter/mm .*\n *1.2 .*\n *0.8 ")
+        printed = self.succeed("clogfit", *files).stdout
+        self.assertRegex(printed, r"diameter/mm .*\n *1.2 .*\n *0.8 ")
         self.succeed("clogsweep", "merge", *files, "--output", "both.h5")
         self.check_two_droplets("both.h5")
         self.succeed("clogsweep", "verify", "both.h5")
@@ -262,7 +263,7 @@ class Units(ProgramTest):
         self.succeed("clogsweep", "--lab", "1.2.cfg", "vertices=64", "box=20", "max-time=40", "seeds=1..2", "--output", first)
         self.check_two_droplets(first)
 
-    def test_rows_of_a_lost_laboratory_are_told_with_another_or_refused(self):
+    def test_rows_of_a_lost_laboratory_are_printed_with_another_or_refused(self):
         first, _ = self.sweeps_of_two_droplets()
         with h5py.File(self.folder / first, "a") as file:
             del file["laboratories"]
@@ -289,9 +290,9 @@ class Units(ProgramTest):
         self.assertAlmostEqual(fit["groups"][0]["tension_mN_per_m"], 9.6, delta=0.01)
         self.assertEqual(fit["units"]["tension_mN_per_m"], "mN/m")
         self.succeed("clogsweep", "model=sp", "wall-stiffness=1", "box=20", "max-time=20", "seeds=1", "--output", "disk.h5")
-        told = self.succeed("clogfit", "disk.h5", "--lab", "lab.cfg").stdout
-        self.assertIn("lambda/mm", told)
-        self.assertNotIn("tension/(mN/m)", told)
+        printed = self.succeed("clogfit", "disk.h5", "--lab", "lab.cfg").stdout
+        self.assertIn("lambda/mm", printed)
+        self.assertNotIn("tension/(mN/m)", printed)
 
     def test_a_curve_tells_the_units_of_its_laboratory(self):
         self.succeed("clogsweep", "--lab", self.lab(), *QUICK, "line-tension=0.5,1,2,4", "seeds=1..3", "--output", "s.h5")
@@ -299,12 +300,12 @@ class Units(ProgramTest):
         self.assertIn(f"in the laboratory: sigma = 3.50 mm, Gamma = 1 is {rounded.plain(gamma)} mN/m",
                       self.succeed("clogfit", "curve", "s.h5").stdout)
 
-    def test_a_run_of_a_laboratory_is_told_in_its_units(self):
+    def test_a_run_of_a_laboratory_is_printed_in_its_units(self):
         lab = self.lab()
         known = self.units(lab)
-        told = self.succeed("clogrun", "array", "--lab", lab, *QUICK, "seeds=1", "--output", "r.h5").stdout
-        distance, time = map(float, re.search(r"after r = ([-0-9.e]+) sigma, t = ([-0-9.e]+) t0", told).groups())
-        far, long = map(float, re.search(r"in the laboratory: r = ([-0-9.e]+) mm, t = ([-0-9.e]+) s", told).groups())
+        printed = self.succeed("clogrun", "array", "--lab", lab, *QUICK, "seeds=1", "--output", "r.h5").stdout
+        distance, time = map(float, re.search(r"after r = ([-0-9.e]+) sigma, t = ([-0-9.e]+) t0", printed).groups())
+        far, long = map(float, re.search(r"in the laboratory: r = ([-0-9.e]+) mm, t = ([-0-9.e]+) s", printed).groups())
         self.assertAlmostEqual(far, 3.5 * distance, places=2)
         self.assertAlmostEqual(long / (time * known["time_s"]), 1, places=3)
         with h5py.File(self.folder / "r.h5") as file:

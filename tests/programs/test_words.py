@@ -1,4 +1,4 @@
-"""Tests that messages name the remedy of the mistake that the user made."""
+"""Tests that messages name the remedy for the user's mistake."""
 
 import unittest
 
@@ -9,8 +9,8 @@ DRY = [*QUICK, "--dry-run"]
 
 class Integers(ProgramTest):
     def tasks(self, seeds):
-        told = self.succeed("clogsweep", *DRY, f"seeds={seeds}").stdout.splitlines()
-        return [line for line in told if not line.startswith("#")]
+        printed = self.succeed("clogsweep", *DRY, f"seeds={seeds}").stdout.splitlines()
+        return [line for line in printed if not line.startswith("#")]
 
     def test_ranges_with_a_step_are_those_of_python(self):
         for first, last, step in [(1, 10, 2), (1, 100, 25), (3, 3, 7), (0, 9, 9), (5, 12, 100)]:
@@ -19,8 +19,8 @@ class Integers(ProgramTest):
 
     def test_a_sweep_of_seeds_with_a_step_resumes(self):
         for _ in range(2):
-            told = self.succeed("clogsweep", *QUICK, "seeds=1..5:2", "--output", "s.h5")
-        self.assertIn("nothing left to do", told.stderr)
+            printed = self.succeed("clogsweep", *QUICK, "seeds=1..5:2", "--output", "s.h5")
+        self.assertIn("nothing left to do", printed.stderr)
         self.assertIn("3 runs", self.succeed("clogsweep", "status", "s.h5").stdout)
 
     def test_other_notations_of_integers_get_the_one_that_is_accepted(self):

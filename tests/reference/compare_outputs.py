@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Compares what two builds print and write for the commands of the handbook.
+"""Compares the outputs and the written files of two builds for the commands of the handbook.
 
     compare_outputs.py BEFORE AFTER [--trees TREE TREE] [--only WORD]     (folders of the programs; source trees)
 
@@ -75,7 +75,7 @@ class Recorder:
         return {path: path.stat().st_mtime_ns for path in sorted(self.folder().rglob("*")) if path.is_file()}
 
     def call(self, name, run):
-        """Records a call. @param run  makes the call; returns a CompletedProcess, or nothing if there is nothing to
+        """Records a call. @param run  makes the call, and returns a CompletedProcess, or nothing if there is nothing to
         compare"""
         before = self.states()
         try:

@@ -23,7 +23,7 @@ import time
 import h5py
 import numpy as np
 
-# The comparison leaves out columns, attributes of the root ("@"), and checksums of such columns.
+# The comparison excludes columns, attributes of the root ("@"), and checksums of such columns.
 CIRCUMSTANCES = {*(f"runs/{name}" for name in ("wall_seconds", "processor_seconds", "rank", "host", "attempt")), "row_checksums",
                  *(f"@{name}" for name in ("version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "checksums",
                                            "start_time", "command_line", "sessions", "activity", "parts"))}
@@ -56,6 +56,8 @@ CASES = {
     "film-friction": "clogsweep preset=elastic friction=0.2 obstacle-gap=0.3 line-tension=0.05 self-contact-range=0.03 "
                      "box=20 max-time=1000 vertices=64 seeds=3 obstacle-density=saturated",
     "break-up": f"{ARRAY} break-up-neck=0.3 line-tension=0.05 obstacle-gap=0.4 max-time=200",
+    "daughters": f"{ARRAY} break-up=daughters break-up-neck=0.08 smallest-daughter=0.4 speed-exponent=1 "
+                 "line-tension=0.05 self-contact-range=0.02 obstacle-gap=0.4 max-time=300",
     "verdict": f"{SWEEP} clog-detection=threshold,certified clog-energy=1e-5 line-tension=3",
     "own-circles": f"{DEVICE} max-time=40 release=anywhere length=12",
     "side-walls": f"{DEVICE} max-time=150 side-walls=on release=entrance entrance=1 entrance-from=3 entrance-to=7 exit=4",

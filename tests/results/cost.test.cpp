@@ -67,7 +67,7 @@ TEST(SweepCost, OfRunsOfWhichNoneEndsIsAnythingUpToTheBound) {
   const SweepCost all = cost(std::vector<RunCost>(10, unfinished(1, 100)), 1000);
   EXPECT_NEAR(all.bound, 1e5, 1e-6);
   EXPECT_NEAR(all.upper, all.bound, 1e-6);
-  EXPECT_GT(all.lower, 2000);  // the runs have computed for 10 s in all, and none of them has ended
+  EXPECT_GT(all.lower, 2000);  // the runs have computed for 10 s in total, and none of them has ended
   EXPECT_GT(all.expected, all.lower);
   EXPECT_LT(all.expected, all.bound);
 }
@@ -88,7 +88,7 @@ TEST(SweepCost, CountsWhatComesBeforeTheFirstStep) {
 
 TEST(SweepCost, WeighsRunsByWhatTheyMayCost) {
   // Half of the sweep's runs cost ten times as much as the others. The estimate weights the runs by their
-  // bounds, whatever fraction of each kind was sampled.
+  // bounds, whichever fraction of each kind was sampled.
   const std::vector<RunCost> sample = {finished(1, 10), finished(10, 100)};
   EXPECT_NEAR(sweep_cost(sample, 110 * 50 / seconds_per_work, 100).expected, 550, 1e-9);
 }

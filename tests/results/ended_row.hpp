@@ -7,7 +7,8 @@
 namespace clog::results {
 
 /// Makes a row that fault_of() accepts. The droplet moved over `distance` at its terminal speed, and then its
-/// run ended. If the status is flowing, the droplet has rested there since.
+/// run ended. If the status is flowing, the droplet has rested there since. With break-up=daughters, it has
+/// clogged without breaking up.
 /// @param distance  [sigma]
 inline void end_run(sweep::RunRow& row, RunStatus status, double distance) {
   row.status = status;
@@ -18,6 +19,11 @@ inline void end_run(sweep::RunRow& row, RunStatus status, double distance) {
   row.wall_seconds = 1;
   row.kinetic_energy_ratio = 0;
   row.shape_parameter = 1;
+  if (row.parameters.dp.break_up == BreakUp::daughters) {
+    Member& ancestor = row.family.emplace_back();
+    ancestor.end = {.distance = distance, .lateral = 0, .time = row.time};
+    ancestor.status = MemberEnd::clogged;
+  }
 }
 
 }  // namespace clog::results

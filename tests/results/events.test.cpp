@@ -25,7 +25,7 @@ class EventsTest : public testing::Test {
     settings.set("seeds", seeds);
     return settings;
   }
-  /// A file that contains all runs of these seeds, none of which has started.
+  /// A file that contains all runs of these seeds. None of the runs has started.
   static store::SweepFile file_of(const std::string& seeds) {
     const sweep::Settings settings = settings_of(seeds);
     const sweep::Plan plan(settings);
@@ -49,7 +49,7 @@ class EventsTest : public testing::Test {
     for (const std::string& line : events_.look(file_)) all.push_back(json::parse(line));
     return all;
   }
-  /// The only event since the last look. Null if there is no event or more than one.
+  /// The only event since the last call. Null if there is no event or more than one.
   json only() {
     const std::vector<json> all = look();
     return all.size() == 1 ? all.front() : json();

@@ -48,7 +48,7 @@ TEST(Groups, OfTheSameRunsInTwoLaboratoriesAreOneTest) {
   ASSERT_EQ(copied.size(), 2u);
   EXPECT_TRUE(is_doubted(copied[0]));
   EXPECT_TRUE(is_doubted(copied[1]));
-  // Two groups of different runs are two tests, so that Holm's p is 0.083.
+  // Two groups of different runs are two tests. So Holm's p is 0.083.
   RunParameters other = run;
   other.obstacles.gap = 0.4;
   rows = clogged_runs(run);

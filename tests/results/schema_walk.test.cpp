@@ -1,5 +1,5 @@
-/// Checks every parameter: two of its values must mean two different runs. So the code that compares, groups,
-/// lists or shares runs cannot overlook a parameter.
+/// Checks that two values of any parameter give two different runs. So the code that compares, groups, lists
+/// or shares runs cannot overlook a parameter.
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -63,6 +63,7 @@ sweep::Settings settings_for(const Parameter& parameter) {
     settings.set("preset", "elastic");
     settings.set("friction", "0.1");
   }
+  if (key == "break-up") settings.set("break-up-neck", "0.05");
   if (key == "advancing-angle")
     settings.set("wall-tension", "0.5");  // Young's angle must be smaller than the largest possible angle
   if (parameter.key == std::string("gravity")) settings.set("preset", "heavy-interface");
@@ -166,9 +167,9 @@ TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
 }
 
-/// ObstacleArrays keeps the walls of the last run. In a device with side walls the walls depend on how far
-/// the droplet reaches, because this limits where droplets may start. So a run with another droplet must get
-/// its own walls.
+/// ObstacleArrays keeps the walls of the last run. In a device with side walls the walls depend on the
+/// droplet's reach, because the reach limits where droplets may start. So a run with another droplet must get
+/// separate walls.
 TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
   sweep::Settings settings;
   settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));

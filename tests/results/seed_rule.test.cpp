@@ -14,7 +14,7 @@
 namespace clog::results {
 namespace {
 
-/// How tasks end of which some clog, and the others are censored.
+/// The ends of tasks: some tasks clog, and the others are censored.
 auto statuses(const std::function<bool(std::int64_t task)>& has_clogged) {
   return [=](std::int64_t task) { return has_clogged(task) ? RunStatus::clogged : RunStatus::flowing; };
 }
@@ -58,7 +58,7 @@ TEST(SeedRule, AddsNoSeedsWhereAllRunsFail) {
   settings.set("line-tension", "0.2,1");
   settings.set("seeds", "1..16");
   GrowingSweep sweep = growing_sweep(settings, 0.6, 100'000);
-  // All runs of one set fail, and half of those of the other, which reaches the precision.
+  // In one set all runs fail. In the other set half of the runs fail, and this set reaches the precision.
   const auto status = [](std::int64_t task) {
     return task % 2 == 0 || task / 2 % 2 == 0 ? RunStatus::failed : RunStatus::clogged;
   };

@@ -56,7 +56,7 @@ int our_fsync(int descriptor) {
 namespace clog::results {
 namespace {
 
-/// A sweep of two runs. The state of the sweep is opened again and again, as if the sweep had been killed.
+/// A sweep of two runs. Its state is opened repeatedly, as if the sweep had been killed.
 class SweepStateTest : public testing::Test {
  protected:
   std::filesystem::path folder_ =

@@ -33,10 +33,10 @@ const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {34, {0, "its process exited with code 3"}},
 };
 
-/// Tasks with this number or a larger one are slow, so that a rank asks them for their progress.
+/// Tasks with this number or a larger one are slow, so that a rank requests their progress.
 constexpr std::int64_t first_slow_task = 60;
 
-/// Tasks with this number or a larger one stop their process in their first slice. It never continues.
+/// Tasks with this number or a larger one stop their process in their first slice, for ever.
 constexpr std::int64_t first_hanging_task = 10'000;
 /// Tasks with these numbers or larger ones kill or stop the helper of their process.
 constexpr std::int64_t first_task_that_kills_the_helper = 20'000;
@@ -64,7 +64,7 @@ class CrashingJob final : public SyntheticJob {
     }
     if (getpid() != rank_pid && task >= first_task_that_kills_the_helper) {
       kill(getppid(), SIGKILL);
-      while (true) pause();  // the process dies together with the helper, before it can end its task
+      while (true) pause();  // the process ends with the helper, before it can end its task
     }
     if (task >= first_hanging_task && task < first_task_that_kills_the_helper) std::raise(SIGSTOP);
     if (task >= first_slow_task && task < first_hanging_task)
@@ -126,7 +126,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
     expect(!of_rank.contains(getpid()), "no rank computes itself");
     num_processes += of_rank.size();
   }
-  // Every task that crashes is tried twice, and once more if its rank is doubted.
+  // Every task that crashes is tried twice, and once more if its rank may be at fault.
   expect(num_processes <= ranks.size() + 3 * crashes.size(), "a process serves many tasks");
 }
 

@@ -62,7 +62,7 @@ TEST(MachineTrust, SetsAMachineAsideWhenOneOfItsThreeSucceedsElsewhere) {
   EXPECT_EQ(suspects[0].tasks, (Tasks{1, 3}));
   EXPECT_EQ(trust.num_in_service(), 2);
   EXPECT_FALSE(trust.may_work(1));
-  trust.let_go();
+  trust.end_holds();
   EXPECT_FALSE(trust.may_work(1)) << "for good";
 }
 
@@ -98,7 +98,7 @@ TEST(MachineTrust, LetsMachinesGoThatNobodyCanClear) {
   MachineTrust trust({"a", "b"}, 0);
   fail_three(trust, 0);
   fail_three(trust, 1);
-  trust.let_go();
+  trust.end_holds();
   EXPECT_TRUE(trust.may_work(0));
   EXPECT_TRUE(trust.may_work(1));
 }

@@ -141,8 +141,8 @@ void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
 }
 
 void what_fails_everywhere_is_tried_once(const scheduler::Communicator& ranks) {
-  // Half of the tasks cross themselves or diverge. They are results: no second attempt, and no rank is
-  // blamed.
+  // Half of the tasks cross themselves or diverge. These are results: there is no second attempt, and no rank
+  // is at fault.
   const auto make_job = [](std::int64_t task, std::span<const std::byte>) {
     return std::make_unique<FailingJob>(task, task % 2 == 0,
                                         task % 4 == 0 ? FailedBy::crossing : FailedBy::divergence);
@@ -200,7 +200,7 @@ Outcome sweep(const scheduler::Communicator& ranks, std::int64_t num_tasks, std:
   };
   events.tries_again = [&](const sweep::RunRow& failed) { return failed.attempt < most_attempts; };
   events.failure_withdrawn = [&](std::int64_t task, const std::string&) {
-    expect(outcome.status[task] == "failed", "a failure that is withdrawn was told of");
+    expect(outcome.status[task] == "failed", "a failure that is withdrawn was reported");
     --outcome.attempts[task];
   };
   events.set_aside = [&](const scheduler::MachineTrust::Suspect& machine) {

@@ -25,7 +25,7 @@ inline void expect(bool holds, const char* what) {
   std::_Exit(1);
 }
 
-/// A job whose number of slices depends on its task.
+/// A job with a number of slices that depends on its task.
 class SyntheticJob : public sweep::Job {
  public:
   SyntheticJob(std::int64_t task, std::span<const std::byte> snapshot)
@@ -64,7 +64,7 @@ inline std::vector<std::string> hosts_of_ranks(int num_ranks, int ranks_per_host
   return hosts;
 }
 
-/// A sweep of one round, with so many ranks on each host.
+/// A sweep of one round with this number of ranks on each host.
 inline scheduler::SweepEnd run_once(const scheduler::Communicator& ranks, const scheduler::TaskOrder& tasks,
                                     const sweep::JobFactory& make_job, const scheduler::SweepEvents& events,
                                     bool master_computes,

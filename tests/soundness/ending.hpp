@@ -17,8 +17,8 @@ enum class Ending {
 };
 const char* name(Ending ending);
 
-/// Judges the end of a run from measurements over a window of time. The ending is the first of these whose
-/// condition holds:
+/// Judges the end of a run from measurements over a window of time. The ending is the first of these with a
+/// fulfilled condition:
 ///   moving      mean_speed > slowest_travel
 ///   decaying    fall > least_fall, and the last quarter of the window is not above the third
 ///   chattering  coherence < least_coherence: vertices move a much shorter distance than their speed permits

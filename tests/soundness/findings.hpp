@@ -8,13 +8,13 @@ namespace clog::soundness {
 /// Measures of a deformable droplet at one moment, or the worst values at several moments.
 struct Findings {
   int crossings = 0;  ///< Number of self-crossings, see num_self_crossings().
-  int enclosed = 0;   ///< Number of obstacles whose centre is inside the droplet.
-  /// Depth of an obstacle's surface inside the interface [vertex diameters; on meshes finer than 128 vertices
-  /// those of 128 vertices].
+  int enclosed = 0;   ///< Number of obstacles with a centre inside the droplet.
+  /// Depth of an obstacle's surface inside the interface [vertex diameters]. For meshes finer than 128
+  /// vertices, the unit is the vertex diameter of 128 vertices.
   double overlap = 0;
-  double area_error = 0;  ///< |area/rest area - 1|
+  double area_error = 0;  ///< relative error of the area, |area/rest area - 1|
   double edge_ratio = 1;  ///< Longest over shortest edge.
-  double perimeter = 0;   ///< In units of the circle's.
+  double perimeter = 0;   ///< perimeter, in units of that of a circle
   double shape = 1;       ///< Shape parameter.
   /// Number of parts into which a time step is split, averaged over the interval between two checks.
   double substeps = 1;

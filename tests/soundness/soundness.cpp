@@ -1,5 +1,5 @@
-/// The program `soundness` tests whether every droplet stays physically sound. See
-/// docs/explanation/soundness.md.
+/// The program `soundness` tests whether every droplet stays physically possible. See
+/// docs/explanation/trust.md.
 
 #include <algorithm>
 #include <atomic>
@@ -50,8 +50,8 @@ constexpr const char* usage =
 The exit code is 0 when all were sound, 1 when one was not, 75 when it was stopped before it knew.
 )";
 
-/// Number of checks of a run between two looks at its droplet. These checks take 2 t0 at the default time
-/// step.
+/// Number of checks of a run between two examinations of its droplet. These checks take 2 t0 at the default
+/// time step.
 constexpr int checks_per_look = 32;
 /// Length of the last part of a run, as a fraction of the run. The ending of the run is judged in this part.
 constexpr double tail_part = 0.2;
@@ -97,7 +97,7 @@ void look(const DropletRun& run, double substeps, CaseReport& report) {
   report.worst.keep_worst(findings);
 }
 
-/// @param longest  CPU time after which the run is given up [s]
+/// @param longest  limit of the CPU time, after which the run is abandoned [s]
 void follow(DropletRun& run, double longest, CaseReport& report) {
   const RunParameters& parameters = report.run;
   const double check_time = DropletRun::steps_per_check * *parameters.time_step;
@@ -316,7 +316,7 @@ void write_runs(std::ofstream& out, const std::string& path, const std::vector<C
 }
 
 /// The cases in the order of their expected duration, longest first. Runs with small line tension and narrow
-/// gaps take longest, because the droplet is stretched and its steps are split.
+/// gaps take longest: the droplet is stretched, and its steps are split.
 std::vector<std::size_t> longest_first(const std::vector<CaseReport>& reports) {
   std::vector<std::size_t> order(reports.size());
   std::iota(order.begin(), order.end(), 0);

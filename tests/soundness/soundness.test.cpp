@@ -67,7 +67,7 @@ TEST(Findings, SeeAFoldedContourAndAWrongArea) {
   EXPECT_FALSE(is_sound(look_at(swollen, test::no_obstacles())));
 }
 
-/// The tail of a droplet whose vertices move by `displace(state, time)` and whose E_k/E_t is `energy(time)`.
+/// The tail of a droplet with vertices that move by `displace(state, time)`. Its E_k/E_t is `energy(time)`.
 template <class Displace, class Energy>
 Tail tail_of(Displace displace, Energy energy) {
   constexpr double interval = 0.064;

@@ -222,7 +222,7 @@ TEST_F(JournalTest, IsReadByThoseWhoMayReadItsTable) {
     journal.rewrite(one);
     EXPECT_EQ(fs::status(path()).permissions(), mode) << "rewritten";
     fs::remove(path());
-    EXPECT_TRUE(journal.make_anew(table_place));
+    EXPECT_TRUE(journal.recreate(table_place));
     EXPECT_EQ(fs::status(path()).permissions(), mode) << "made anew";
     journal.remove();
   }

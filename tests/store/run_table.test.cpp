@@ -57,8 +57,32 @@ std::vector<sweep::RunRow> some_rows(int number) {
   return rows;
 }
 
+TEST_F(RunTableTest, GivesBackFamilies) {
+  std::vector<sweep::RunRow> rows = some_rows(3);
+  rows[1].family.resize(3);
+  rows[1].family[0].status = MemberEnd::broken;
+  rows[1].family[1] = {.path = "0",
+                       .diameter = 0.6,
+                       .birth = {1, 2, 3},
+                       .end = {4, 5, 6},
+                       .status = MemberEnd::small,
+                       .mechanism = ClogMechanism::none};
+  rows[1].family[2].path = "1";
+  rows[1].family[2].mechanism = ClogMechanism::wrapped;
+  publish(path(), rows, {});
+  const SweepFile file = read_sweep(path());
+  EXPECT_TRUE(file.rows[0].family.empty());
+  ASSERT_EQ(file.rows[1].family.size(), 3);
+  const Member& member = file.rows[1].family[1];
+  EXPECT_EQ(member.path, "0");
+  EXPECT_EQ(member.diameter, 0.6);
+  EXPECT_EQ(member.end.lateral, 5);
+  EXPECT_EQ(member.status, MemberEnd::small);
+  EXPECT_EQ(file.rows[1].family[2].mechanism, ClogMechanism::wrapped);
+}
+
 TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
-  for (const int number : {0, 1, 200, 1000}) {  // each table replaces the table before
+  for (const int number : {0, 1, 200, 1000}) {  // each table replaces the previous table
     const std::vector<sweep::RunRow> rows = some_rows(number);
     publish(path(), rows, {{"version", "1.2.3"}, {"empty", ""}});
     const SweepFile file = read_sweep(path());
@@ -304,8 +328,8 @@ TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
       std::string damaged = content;
       damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << bit));
       write_text("damaged.h5", damaged);
-      // Some flipped bits do not change what is read: bits between digits and name, and bits that turn a
-      // lower-case letter of a hexadecimal number into upper case.
+      // Some flipped bits do not change the content: bits between digits and name, and bits that change the
+      // case of a letter in a hexadecimal number.
       try {
         EXPECT_EQ(read_sweep(path("damaged.h5")).provenance, read_sweep(path()).provenance)
             << byte << ' ' << bit;

@@ -20,7 +20,7 @@
 
 namespace clog::store {
 
-/// A test with an empty folder of its own.
+/// A test with a separate empty folder.
 class FolderTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -54,7 +54,7 @@ inline void publish(const std::string& path, const std::vector<sweep::RunRow>& r
   publish_sweep(place, place.stamp(), {rows, provenance, circles});
 }
 
-/// Simulates a full disk by a limit on the size of files. So it must run in its own process. If the action
+/// Simulates a full disk by a limit on the size of files. So it must run in a separate process. If the action
 /// throws an Error, its text is printed on the error stream, and the process exits with 2.
 [[noreturn]] inline void run_on_full_disk(rlim_t num_bytes, const std::function<void()>& action) {
   std::signal(SIGXFSZ, SIG_IGN);

@@ -93,29 +93,29 @@ class OtherProcess {
     if (pipe(ends) != 0) std::abort();
     process_ = fork();
     if (process_ == 0) {
-      const std::string told = work() + '\n';
-      if (write(ends[1], told.data(), told.size()) < 0) _exit(1);
+      const std::string report = work() + '\n';
+      if (write(ends[1], report.data(), report.size()) < 0) _exit(1);
       for (;;) pause();
     }
     close(ends[1]);
-    told_ = ends[0];
+    report_ = ends[0];
   }
   OtherProcess(const OtherProcess&) = delete;
   ~OtherProcess() {
     kill(process_, SIGKILL);
     waitpid(process_, nullptr, 0);
-    close(told_);
+    close(report_);
   }
 
-  std::string told() const {
+  std::string report() const {
     std::string text;
-    for (char next = 0; read(told_, &next, 1) == 1 && next != '\n';) text += next;
+    for (char next = 0; read(report_, &next, 1) == 1 && next != '\n';) text += next;
     return text;
   }
 
  private:
   pid_t process_ = -1;
-  int told_ = -1;
+  int report_ = -1;
 };
 
 TEST(ObstacleArrays, KeepsTheLastOne) {
@@ -161,15 +161,15 @@ TEST(ObstacleArrays, AreInMemoryOnceForAllProcesses) {
   // All processes begin at once. One of them builds the array, and the others wait for it.
   std::vector<std::unique_ptr<OtherProcess>> others(4);
   for (auto& other : others) other = std::make_unique<OtherProcess>(get);
-  std::vector<std::string> told;
-  told.reserve(others.size());
-  for (const auto& other : others) told.push_back(other->told());
-  std::ranges::sort(told);
-  EXPECT_EQ(told[0].substr(0, 2), "0 ");
-  EXPECT_EQ(told[3], '1' + told[0].substr(1));
-  EXPECT_EQ(told[1], told[0]);
-  EXPECT_EQ(told[2], told[0]);
-  EXPECT_EQ(told[0].find("00:00 0"), std::string::npos) << told[0];
+  std::vector<std::string> reports;
+  reports.reserve(others.size());
+  for (const auto& other : others) reports.push_back(other->report());
+  std::ranges::sort(reports);
+  EXPECT_EQ(reports[0].substr(0, 2), "0 ");
+  EXPECT_EQ(reports[3], '1' + reports[0].substr(1));
+  EXPECT_EQ(reports[1], reports[0]);
+  EXPECT_EQ(reports[2], reports[0]);
+  EXPECT_EQ(reports[0].find("00:00 0"), std::string::npos) << reports[0];
 }
 
 TEST(ObstacleArrays, StayWhenTheirBuilderIsKilledAndGoWithTheLastReader) {
@@ -180,7 +180,7 @@ TEST(ObstacleArrays, StayWhenTheirBuilderIsKilledAndGoWithTheLastReader) {
     arrays.get(run_in(large, seed));
     return std::to_string(arrays.num_built());
   });
-  ASSERT_EQ(builder->told(), "1");
+  ASSERT_EQ(builder->report(), "1");
   auto array = first.get(run_in(large, seed));
   builder.reset();
   second.get(run_in(large, seed));
@@ -207,7 +207,7 @@ TEST(ObstacleArrays, AreBuiltByTheNextWhenTheirBuilderIsKilledAtWork) {
       usleep(100'000);
       return std::string("at work");
     });
-    ASSERT_EQ(builder.told(), "at work");
+    ASSERT_EQ(builder.report(), "at work");
   }
   ObstacleArrays arrays;
   EXPECT_GT(arrays.get(run_in(slow, seed))->obstacles().size(), 900000u);
@@ -296,7 +296,7 @@ TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
     later.join();
     return std::to_string(is_possible) + " possible, " + std::to_string(arrays.num_built()) + " built";
   });
-  EXPECT_EQ(without_files.told(), "0 possible, 1 built");
+  EXPECT_EQ(without_files.report(), "0 possible, 1 built");
 }
 
 TEST(NameLock, IsHeldByOneAtATime) {
@@ -325,7 +325,7 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
   };
   for (const bool as_another : {false, true}) {
     const auto other = take(as_another);
-    ASSERT_EQ(other->told(), "held");
+    ASSERT_EQ(other->report(), "held");
     const NameLock lock(name);
     EXPECT_EQ(lock.state(), NameLock::State::held_by_another);
     EXPECT_EQ(lock.is_taken_by_another_user(), as_another);
@@ -334,7 +334,7 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
 }
 
 TEST(RunJob, GivesTheSameRowInASharedArray) {
-  // A run of a droplet that travels far among obstacles. The outcome of the run does not depend on the last
+  // A droplet of this run travels far among obstacles. The outcome of the run does not depend on the last
   // bits.
   const Plan plan(settings_of({{"line-tension", "0.1"},
                                {"obstacle-density", "1"},

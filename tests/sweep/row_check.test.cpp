@@ -56,7 +56,7 @@ const std::vector<Keys> sweeps = {
     {{"max-time", "200"}, {"model", "sp"}, {"wall-stiffness", "100"}, {"terminal-speed", "100"}},
 };
 
-/// The row of a stiff polygon that has clogged. So it has all results.
+/// The row of a stiff polygon that has clogged. It has all results.
 const RunRow& clogged() {
   static const RunRow row = row_of(sweeps.front());
   return row;
@@ -208,7 +208,7 @@ TEST(Unpack, NamesEveryWordThatIsUnknown) {
     EXPECT_EQ(fault_with<std::string>(column, "wrapqed"), column.name + "='wrapqed' " + what);
     ++num_tried;
   }
-  EXPECT_EQ(num_tried, 17);
+  EXPECT_EQ(num_tried, 18);
 }
 
 TEST(Unpack, KeepsWhatIsUnknown) {
@@ -352,7 +352,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
   }
 }
 
-/// The final row of a run whose droplet rested twice and ended hanging over an obstacle.
+/// The final row of a run. The droplet rested twice and ended hanging over an obstacle.
 const RunRow& hanging() {
   static const RunRow row = [] {
     RunRow one = row_of({{"max-time", "1000"},
@@ -416,6 +416,34 @@ TEST(FaultOf, NamesNecksThatCannotBe) {
   EXPECT_EQ(fault_of(necked), "");
 }
 
+TEST(FaultOf, NamesFamiliesThatCannotBe) {
+  const RunRow whole = row_of({{"max-time", "100"},
+                               {"line-tension", "0.05"},
+                               {"break-up-neck", "0.1"},
+                               {"break-up", "daughters"},
+                               {"seeds", "5"}});
+  ASSERT_GE(whole.family.size(), 3);
+  EXPECT_EQ(fault_of(whole), "");
+  const auto fault = [&](const auto& change) {
+    RunRow row = whole;
+    change(row.family);
+    return fault_of(row);
+  };
+  using Family = std::vector<Member>;
+  EXPECT_EQ(fault([](Family& family) { family.clear(); }), "its droplets are missing");
+  EXPECT_EQ(fault([](Family& family) { family.push_back(family[1]); }), "its droplet 0 occurs twice");
+  EXPECT_NE(fault([](Family& family) { family.erase(family.begin() + 1); }), "");
+  EXPECT_NE(fault([](Family& family) { family.back().diameter *= 0.99; }), "");
+  EXPECT_NE(fault([](Family& family) { family.back().end.time = -1; }), "");
+  RunRow in_progress = whole;
+  in_progress.status = RunStatus::interrupted;
+  in_progress.family.clear();
+  EXPECT_EQ(fault_of(in_progress), "") << "the ancestor has broken up, and a daughter moves";
+  RunRow without = whole;
+  without.parameters.dp.break_up = BreakUp::end;
+  EXPECT_EQ(fault_of(without), "it has droplets, but no family");
+}
+
 TEST(FaultOf, NamesContactsThatCannotBe) {
   RunRow met = row_of({{"max-time", "5"}});
   met.contacts.number = 2, met.contacts.first_distance = met.distance / 2;
@@ -438,7 +466,7 @@ TEST(FarthestWay, IsHardlyMoreThanAFreeSoftDiskFalls) {
   RunRow row = describe(plan_of({{"model", "sp"}, {"wall-stiffness", "1"}}).task(0));
   row.parameters.obstacles.gap = std::nan("");
   row.time = 1000;
-  EXPECT_NEAR(farthest_way(row), 1.1 * row.parameters.drag.terminal_speed * row.time, 1e-12);
+  EXPECT_NEAR(farthest_distance(row), 1.1 * row.parameters.drag.terminal_speed * row.time, 1e-12);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(UntestedParameters, AreNamedWithTheirValueBeyondIt) {
 TEST(UntestedParameters, OfAPlanAreNamedOnceEach) {
   EXPECT_EQ(untested_parameters(limits_plan({{"line-tension", "0.1,1"}})), "");
   EXPECT_EQ(untested_parameters(limits_plan({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
-            "outside the range tested for soundness (handbook, Which droplets are sound): line-tension=0 "
+            "outside the range tested for soundness (handbook, How far to trust it): line-tension=0 "
             "(robust is tested from "
             "0.05 to 10), "
             "line-tension=30 (robust is tested from 0.05 to 10)");

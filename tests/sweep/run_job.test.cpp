@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "clog/core/run/dwell_record.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/columns.hpp"
+#include "clog/sweep/messages.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "support.hpp"
 
@@ -64,7 +66,7 @@ TEST(BegunRow, KnowsEveryResultThatIsKnownAtTheRelease) {
 }
 
 TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
-  // The obstacles are so close to each other that for some seeds there is no void near the centre of the box.
+  // The obstacles are so close together that some seeds give no void near the centre of the box.
   const Plan plan(settings_of({{"obstacle-diameter", "3"},
                                {"obstacle-gap", "0.06"},
                                {"obstacle-density", "saturated"},
@@ -85,9 +87,9 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   EXPECT_GT(num_failed, 0);
 }
 
-/// A snapshot of the task in which `change` has changed the numbers of the dwells. The numbers are a length,
-/// a distance and a beginning for each of eight dwells, and after them the smallest duration of dwells that
-/// are known.
+/// A snapshot of the task in which `change` has changed the numbers of the dwells. These numbers are a
+/// length, a distance and a beginning for each of eight dwells. The last number is the smallest duration of
+/// dwells that are known.
 template <class Change>
 std::vector<std::byte> changed_snapshot(const RunParameters& run, Change change) {
   RunJob job(run, 0);
@@ -153,6 +155,31 @@ TEST(RunJob, SaysWhyItCannotUseItsSnapshot) {
   job.advance();
   EXPECT_EQ(job.row().message, "the snapshot is of another version");
   EXPECT_EQ(job.row().status, RunStatus::interrupted);
+}
+
+TEST(Report, KeepsAFamilyInPlaceOfTheSnapshot) {
+  RunRow row = RunJob(small_plan("5").task(0), 0).row();
+  row.status = RunStatus::broken;
+  const std::vector<std::byte> snapshot(100, std::byte{42});
+  EXPECT_EQ(report_from(to_bytes({row, snapshot})).snapshot, snapshot);
+  row.family.resize(3);
+  row.family[0].status = MemberEnd::broken;
+  row.family[2].path = "1";
+  row.family[2].diameter = 0.8;
+  const Report report = report_from(to_bytes({row, snapshot}));
+  EXPECT_TRUE(report.snapshot.empty());
+  ASSERT_EQ(report.row.family.size(), 3);
+  EXPECT_EQ(report.row.family[2].path, "1");
+  EXPECT_EQ(report.row.family[2].diameter, 0.8);
+}
+
+TEST(Report, RefusesATornFamily) {
+  RunRow row = RunJob(small_plan("5").task(0), 0).row();
+  row.status = RunStatus::flowing;
+  row.family = {Member()};
+  std::vector<std::byte> bytes = to_bytes({row, {}});
+  bytes.resize(bytes.size() - 1);
+  EXPECT_THROW(report_from(bytes), Error);
 }
 
 }  // namespace

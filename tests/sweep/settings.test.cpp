@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <string_view>
+#include <utility>
+
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/sweep/keys.hpp"
+#include "clog/sweep/plan.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -26,6 +32,24 @@ TEST(Settings, DefaultsAreThoseOfTheParameters) {
     key.apply(run, settings.values(key.name).front());
     EXPECT_EQ(key.parameter->get(run), key.parameter->get(expected)) << key.name;
   }
+}
+
+/// The ratio of a preset's springs must not be stored for other springs, or beside a given stiffness.
+TEST(Settings, AreReadBackForEveryPresetWithOtherSprings) {
+  for (const std::string& preset : preset_names())
+    for (const auto& [key, text] : {std::pair{"perimeter-spring", "mean"},
+                                    {"perimeter-spring", "rest"},
+                                    {"perimeter-spring", "along"},
+                                    {"perimeter-stiffness", "0.5"}}) {
+      Settings settings;
+      settings.set("preset", preset);
+      settings.set(key, text);
+      if (std::string_view(text) == "along") settings.set("gravity", "area");
+      const RunParameters run = Plan(settings).task(0);
+      const RunParameters again = Plan(Settings::from_config(settings.to_config())).task(0);
+      EXPECT_EQ(again.dp.perimeter_stiffness, run.dp.perimeter_stiffness)
+          << preset << " " << key << " " << text;
+    }
 }
 
 TEST(Settings, ReadBackFromTheirOwnText) {

@@ -152,7 +152,7 @@ TEST(Shortest, IsNoLongerThanAnyTextThatReadsBack) {
   }
 }
 
-/// These texts belong to the identity of rows. So other texts would mean other runs.
+/// These texts are a part of the identity of rows. So other texts would mean other runs.
 TEST(Shortest, IsWrittenAsPeopleDo) {
   const std::pair<double, const char*> texts[] = {{0, "0"},
                                                   {-0.0, "-0"},

@@ -1,4 +1,5 @@
-"""Compares the statements of the article with the results of this program: see python3 -m clogsweep agreement."""
+"""Compares the statements of the article (Cheng et al.) with the results of this program: see python3 -m clogsweep
+agreement."""
 
 from .statements import judge_all
 from .table import WRITERS

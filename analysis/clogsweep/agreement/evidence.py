@@ -23,12 +23,12 @@ def bounds(group: Group) -> tuple[float, float]:
 
 
 def shorter(first: Group, second: Group) -> bool:
-    """Whether the first clogging length is clearly shorter."""
+    """Whether the first clogging length is clearly shorter than the second."""
     return bounds(first)[1] < bounds(second)[0]
 
 
 def slower(first: Group, second: Group) -> bool:
-    """Whether the first mean speed is clearly lower."""
+    """Whether the first mean speed is clearly lower than the second."""
     error = math.hypot(first[f"{STEADY}_error"] or 0.0, second[f"{STEADY}_error"] or 0.0)
     return second[STEADY] - first[STEADY] > 2 * error
 
@@ -62,15 +62,15 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
 
 
 def trend(is_as_published: bool, is_opposite: bool) -> str:
-    """The verdict on a curve, or on two points. Clear differences may be as published, or opposite, or both at
-    different points of a curve. Without a clear difference the verdict is NOT_KNOWN."""
+    """The verdict on a curve, or on two points. A curve may have clear differences of both kinds at different points:
+    as published, and opposite. Without a clear difference the verdict is NOT_KNOWN."""
     return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
 
 
 def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callable[[Group, Group], bool],
                         value_of: Callable[[Group], str]) -> Finding:
-    """Judges from one curve for each gap whether the clogging length of soft disks falls with the wall stiffness
-    E_w."""
+    """Judges whether the clogging length of soft disks falls with the wall stiffness E_w. There is one curve for each
+    gap."""
     ordered = {gap: sorted(curve, key=lambda group: group["wall_stiffness"]) for gap, curve in found.items()}
     words = {gap: [f"{value_of(end)} at {end['wall_stiffness']:g}" for end in (curve[0], curve[-1])]
              for gap, curve in ordered.items()}
@@ -79,8 +79,8 @@ def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callabl
 
 
 def overall(verdicts: Sequence[str]) -> str:
-    """One verdict for several curves: their common verdict. If they differ, it is NOT_KNOWN if this is the verdict on
-    more than half of them; otherwise IN_KIND, or DOES_NOT if no curve is as published."""
+    """One verdict for several curves: their common verdict, if they have one. If the curves have different verdicts, it
+    is NOT_KNOWN if more than half of them are NOT_KNOWN, else DOES_NOT if no curve is as published, else IN_KIND."""
     if len(set(verdicts)) == 1:
         return verdicts[0]
     if not verdicts or 2 * list(verdicts).count(NOT_KNOWN) > len(verdicts):

@@ -1,4 +1,4 @@
-"""Judges statements on what single droplets do, from the outlines of their replays."""
+"""Judges statements about single droplets, from the outlines of their replays."""
 
 import numpy as np
 

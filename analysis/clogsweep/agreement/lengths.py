@@ -1,4 +1,5 @@
-"""Judges statements of sections 4.2 and 5 and of appendix C, on clogging lengths of polygons and disks."""
+"""Judges statements of the article (Cheng et al.), sections 4.2 and 5 and appendix C: on clogging lengths of polygons
+and disks."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
@@ -20,7 +21,8 @@ CONFIDENCE = 0.95
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
-    """The highest point among those that are clearly above some point on their left and some point on their right."""
+    """The highest point among those points that are clearly above some point on their left and some point on their
+    right."""
     found = [point for i, point in enumerate(curve)
              if any(shorter(other, point) for other in curve[:i])
              and any(shorter(other, point) for other in curve[i + 1:])]
@@ -55,8 +57,8 @@ def peak_draws(curve: Sequence[Group], seed: int) -> tuple[features.Peak, Number
 
 
 def peak_moves(groups: list[Group]) -> Finding:
-    """Fits a straight line to log Gamma_peak against the gap for each posterior draw. The fraction of draws in which
-    the slope is zero or negative decides the verdict."""
+    """Fits a straight line to log Gamma_peak against the gap for each posterior draw. The verdict depends on the
+    fraction of draws with a slope of zero or below."""
     by_gap = curves([group for group in groups if group["total_distance"]], "obstacle_gap")
     found = {gap: peak_draws(curve, seed) for seed, (gap, curve) in enumerate(by_gap.items(), 1)
              if sum(group["clogs"] > 0 for group in curve) >= points.FEWEST_CLOGGING}
@@ -72,9 +74,9 @@ def peak_moves(groups: list[Group]) -> Finding:
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
-    """The range of line tensions in which squeezed clogs replace wrapped ones. The range begins at the largest line
-    tension at which more clogs are wrapped than squeezed. It ends at the next line tension at which more clogs are
-    squeezed than wrapped."""
+    """The range of line tensions in which squeezed clogs replace wrapped clogs. It begins at the largest line tension
+    at which more clogs are wrapped than squeezed. It ends at the next line tension at which more clogs are squeezed
+    than wrapped."""
     wrapped = max((point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]), default=math.inf)
     squeezed = [point["line_tension"] for point in curve
                 if point["squeezed"] > point["wrapped"] and point["line_tension"] > wrapped]
@@ -82,7 +84,7 @@ def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
 
 
 def transition_moves(groups: list[Group]) -> Finding:
-    """Judges whether the range of transition() lies at larger line tensions in the widest gap than in the narrowest
+    """Judges whether the range of transition() is at larger line tensions in the widest gap than in the narrowest
     gap."""
     found = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
     wrapped, clogs = (sum(group[name] for group in groups) for name in ("wrapped", "clogs"))
@@ -111,7 +113,7 @@ def two_mechanisms(groups: list[Group]) -> Finding:
     return Finding(overall(verdicts), ", ".join(counted))
 
 
-LEAST_HELP = 0.01  # A neighbour that bears less of the support is no help.
+LEAST_HELP = 0.01  # A neighbour that bears a smaller fraction of the support does not help.
 
 
 def neighbours_support(runner: Runner, family: Family) -> Finding:
@@ -130,7 +132,7 @@ def neighbours_support(runner: Runner, family: Family) -> Finding:
 
 def grows_with_gap(groups: Iterable[Group], abscissa: str, beyond: float = 0.0) -> Finding:
     """Judges whether lambda is longer in the widest gap than in the narrowest gap, at every abscissa larger than
-    `beyond`. An abscissa at which no droplet clogs in either gap does not count."""
+    `beyond`. An abscissa is excluded if no droplet clogs there in either gap."""
     verdicts, words = {}, []
     for place, members in curves(groups, abscissa).items():
         members = sorted(members, key=lambda group: group["obstacle_gap"])
@@ -156,8 +158,8 @@ def longer_in_wide_gaps(groups: list[Group]) -> Finding:
 
 
 def flows_between(groups: list[Group]) -> Finding:
-    """Judges whether there is a line tension at which no droplet clogs, although some clog at smaller and at larger
-    line tensions."""
+    """Judges whether there is a line tension at which no droplet clogs, although some droplets clog at smaller line
+    tensions and some at larger ones."""
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
         free = [i for i, point in enumerate(curve) if point["clogs"] == 0]
@@ -266,8 +268,8 @@ def disks_diverge(runner: Runner) -> Finding:
 
 
 LONG = 1e4  # A length beyond this is 1e4 to 1e5 times that of stiff droplets.
-APART = 0.25  # The article says that the models differ if the sag is larger than this.
-ALIKE = 2.0  # Lengths with a larger ratio than this are not alike.
+APART = 0.25  # Largest sag at which the models agree, according to the article.
+ALIKE = 2.0  # Two lengths are alike if their ratio is at most this.
 
 
 def over_the_sag(runner: Runner, config: str, groups: Sequence[Group]) -> list[tuple[float, Group]]:
@@ -276,10 +278,10 @@ def over_the_sag(runner: Runner, config: str, groups: Sequence[Group]) -> list[t
 
 
 def compared(runner: Runner, family: Family, is_beyond: bool) -> Finding:
-    """Compares the lengths of polygons with those of disks with the same sag. With `is_beyond` the sags are larger than
-    APART, and the lengths should differ; otherwise the sags are smaller, and the lengths should agree. Lengths agree if
-    their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound serves as the
-    length."""
+    """Compares the lengths of polygons with those of disks that have the same sag. With `is_beyond` the sags are larger
+    than APART, and the lengths should differ. Otherwise the sags are smaller, and the lengths should agree. Lengths
+    agree if their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound
+    replaces the length."""
     disks = over_the_sag(runner, "clogging-sp", runner.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]
 

@@ -1,5 +1,5 @@
-"""Judges statements of section 4.1 and of appendices A and B, on measured quantities and on passages through channels.
-Nothing in such a passage is random, so there are no confidence intervals."""
+"""Judges statements of the article (Cheng et al.), section 4.1 and appendices A and B: on measured quantities and on
+passages through channels. Nothing in such a passage is random, so there are no confidence intervals."""
 
 import math
 from typing import Any
@@ -92,8 +92,9 @@ def drag_exponent(runner: Runner) -> Finding:
 
 
 def profiles_are_smooth(runner: Runner) -> Finding:
-    """Compares the profiles of all meshes with that of the finest one. The statement holds in kind if the profiles are
-    smooth from 128 vertices on, but those of coarser meshes are not noisy, or end because the droplet does not pass."""
+    """Compares the profiles of all meshes with that of the finest mesh. The verdict is IN_KIND if all
+    profiles with 128 vertices or more are smooth, but a coarser mesh has a profile that is not noisy, or a droplet that
+    does not pass."""
     runs = channels.meshes(runner)
     *coarser, finest = sorted(runs)
     if not coarser or not coarser[0] < 128 <= coarser[-1]:
@@ -154,7 +155,7 @@ def speeds_of_experiments(_: Runner) -> Finding:
 
 def tensions_scale(_: Runner) -> Finding:
     """Compares ratios of line tensions. Values agree if they differ by at most twice their combined errors. The error
-    of Gamma* is 6 %."""
+    of Gamma* (the line tension of the simulated droplet that moves like the measured one) is 6 %."""
     weights = [math.sin(math.radians(tilt)) * diameter**2 for tilt, diameter, _ in EXPERIMENTS]
     found = [0.16 * weights[0] / weight for weight in weights[1:]]
     is_within = [abs(value - published) <= 2 * math.hypot(error, value / 16)

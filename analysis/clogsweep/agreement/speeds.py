@@ -1,4 +1,5 @@
-"""Judges statements of section 4.3 and of appendices D and E, on mean speeds among obstacles."""
+"""Judges statements of the article (Cheng et al.), section 4.3 and appendices D and E: on mean speeds among
+obstacles."""
 
 import math
 from typing import Any
@@ -19,7 +20,7 @@ def speed_curves(runner: Runner, config: str, parameter: str, abscissa: str) -> 
     return {value: sorted(curve, key=lambda group: group[abscissa]) for value, curve in found.items()}
 
 
-# The published model has no corner pinning.
+# In the published model, the corners of the polygon do not hold the droplet (no corner pinning).
 WALLS = [Family("speed-robust", "no friction, no corner pinning"), Family("speed", "no friction, corner pinning")]
 
 
@@ -95,8 +96,8 @@ def soft_disks_are_free(runner: Runner) -> Finding:
 
 
 def speed_pairs(runner: Runner) -> list[tuple[float, Group, float, Group]]:
-    """Two pairs of a polygon and a disk in gaps of 1.1: the stiffest of both models, and the softest of both models.
-    Each droplet comes with its sag."""
+    """Two pairs of a polygon and a disk in gaps of 1.1: the stiffest droplets of both models, and the softest droplets
+    of both models. Each droplet comes with its sag."""
     found = []
     for config in ("speed", "speed-sp"):
         groups = [group for group in arrays.with_speeds(runner, config) if math.isclose(group["obstacle_gap"], 1.1)]

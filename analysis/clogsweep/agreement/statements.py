@@ -1,7 +1,8 @@
-"""The statements of the article in its order: the place of each, its text, and how it is judged.
+"""The statements of the article (Cheng et al.) in the article's order. Each has its place in the article, its text, and
+a judge.
 
-A judge gets the runner with the sweeps of the figures. for_families() and for_walls() repeat it for each law of the
-walls. A reason belongs to a verdict and is printed with it.
+A judge gets the runner with the sweeps of the figures. for_families() and for_walls() call a judge once for each law of
+the walls. A reason belongs to a verdict and is printed with it.
 """
 
 from functools import partial
@@ -15,7 +16,7 @@ from .verdicts import (DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, Judged, Statement, 
 
 EXPONENT = ("4/3 is the exponent for a vertex; a droplet has a smaller one, because the wall slows only the nearest"
             " vertices; a vertex exponent of 11/6 gives 1.31 to 1.36 for a droplet near one wall")
-# What the verdict is for, before variants.
+# The model, interface and contact of a verdict. Variants have others.
 CHANNEL, SURFACE = "robust, contact at half a vertex's distance (published)", "robust, contact at the surface"
 ROBUST, ELASTIC, DISK = "robust, no friction", "elastic, no friction", "soft disk"
 FORMULA, NOTHING = "published numbers", "-"

@@ -1,6 +1,6 @@
-"""The verdicts on statements of the article, and how a statement is judged.
+"""The verdicts on statements of the article (Cheng et al.), and how a statement is judged.
 
-The verdict is computed. If it is not `agrees`, the reason for it was written by hand.
+The program computes the verdict. If it is not `agrees`, it comes with a reason that was written by hand.
 """
 
 import dataclasses
@@ -39,7 +39,7 @@ class Statement:
     @param model  the model, interface and contact that the verdict is for
     @param criterion  what `agrees` and other verdicts mean, with thresholds; written before the runs are read
     @param judge  finds the verdict
-    @param figures  the figures whose sweeps the judge needs
+    @param figures  the figures with sweeps that the judge needs
     @param reasons  the reason for each verdict that has one, in addition to ALWAYS"""
 
     where: str
@@ -63,8 +63,8 @@ def tried(judge: Callable[..., Finding], *arguments: Any) -> Finding:
 
 
 def with_variants(found: Mapping[Family, Finding]) -> Finding:
-    """The finding of the first family, which is nearest to the published model. If the first family does not agree but
-    another family does, the verdict says whether friction or the mesh makes the difference."""
+    """The finding of the first family, which is nearest to the published model. If only another family agrees, the
+    verdict names the cause of the difference: friction, or the mesh."""
     (_, nearest), *others = found.items()
     verdict = nearest.verdict
     if verdict in (DOES_NOT, NOT_KNOWN):
@@ -87,8 +87,8 @@ def words_of_variants(found: Sequence[tuple[str, Finding]]) -> tuple[str, str]:
 
 
 def for_contacts(judge: Callable[..., Finding], **arguments: Any) -> Callable[[Runner], Finding]:
-    """Judges a statement on passages through orifices with the published contact, which begins at half the distance of
-    two vertices from the wall, and as a variant with contact at the surface.
+    """Judges a statement on passages through orifices. The published contact begins before the wall, at
+    half the distance between two vertices. A variant has contact at the surface.
     @param judge  has a parameter `contact`"""
     def of_contacts(runner: Runner) -> Finding:
         published, surface = (judge(runner, contact=contact, **arguments) for contact in ("half-vertex", "surface"))
@@ -122,7 +122,7 @@ class Judged:
     @property
     def reason(self) -> str:
         """The reason for the verdict. If the statement does not agree or cannot be judged, the reason also names the
-        figures whose runs were tried."""
+        figures with runs that were tried."""
         reasons = ALWAYS | dict(self.statement.reasons)
         figures = ", ".join(self.statement.figures) if self.finding.verdict in (DOES_NOT, NOT_KNOWN) else ""
         runs = f"tried: runs of figure{'s' * (',' in figures)} {figures}" if figures else ""

@@ -10,8 +10,8 @@ from ..tools.rounded import count_text
 from .profiles import Profile, at
 from .simulation import APPROACH
 
-# Residual of a frame that the simulated droplet just fails to reach. Residuals of frames that it reached are limited to
-# this value.
+# Residual of a frame just beyond the farthest point of the simulated droplet. Residuals of frames that the droplet
+# reached are limited to this value.
 NEVER_REACHED = 10
 # The correlation is NaN for a profile with fewer residuals.
 FEWEST_CORRELATED = 8
@@ -22,7 +22,7 @@ def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int
     @throws UserError  if frames are upstream of the start of the simulation
 
     The residual of such a frame is 10, plus 10 for each diameter between the frame and the farthest point that the
-    droplet reached. So a search among droplets that clog can tell which of them get closer.
+    droplet reached. With these residuals, a search among droplets that clog can detect progress.
     """
     speed = at(simulated, measured.h).speed
     refuse_upstream(measured.h[np.isnan(speed) & (measured.h < simulated.h[0])], simulated)

@@ -10,7 +10,7 @@ from ..results import laboratory
 from ..tools.errors import ProgramFailed, UserError
 from .profiles import ReducedUnits
 
-# Values for quantities that clogfit units requires. The values serve commands whose user did not give these quantities.
+# Values of quantities that clogfit units requires, for commands that do not ask their user for these quantities.
 UNKNOWN = {"diameter": "1 mm", "angle": "90 deg"}
 
 

@@ -11,8 +11,8 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 FEWEST_FRAMES = 3
-# If a simulated passage is calibrated, only its frames within this distance from the orifice are used, as in an
-# experiment [sigma].
+# For the calibration of a simulated passage, only frames within this distance from the orifice are used [sigma].
+# Experiments have frames only there.
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
 ROUNDING = 1e-9  # [sigma]
@@ -37,8 +37,8 @@ class ReducedUnits(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """The conditions of a passage, except for those of the droplet. Each field has the name of a column. With hyphens
-    for underscores, the name of a column is also that of a key."""
+    """The conditions of a passage, apart from those of the droplet. Each field has the name of a column. The
+    corresponding key has the same name, with hyphens in place of underscores."""
 
     orifice: float
     wedge_angle: float
@@ -101,8 +101,8 @@ def read_run(path: str) -> tuple[Profile, np.void]:
 
 
 def at(profile: Profile, h: Numbers) -> Profile:
-    """The profile at the places h, interpolated linearly. If the droplet reaches h several times, the first time
-    counts. Values are NaN upstream of the start, and where the droplet never reaches h."""
+    """The profile at the places h, interpolated linearly. If the droplet reaches h several times, its first arrival
+    counts. Values are NaN upstream of the start, and at places that the droplet never reaches."""
     first = profile.h >= np.maximum.accumulate(profile.h)
     ends = np.array([profile.h[0], profile.h.max()])
     # Conversion to diameters may round a frame at the start or at the end of the profile to a place outside.

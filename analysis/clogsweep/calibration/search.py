@@ -1,10 +1,10 @@
 """Searches for the line tension and the near-wall drag with which the simulation is closest to a measured passage.
 
 Close to a line tension at which the droplet clogs, Delta_v has several minima, each about a percent of Gamma wide. The
-search begins on a coarse grid and descends from its best points by the simplex method. The search then brackets the
-line tension at which droplets clog, and descends again from several line tensions below this bracket. The distance from
-the bracket doubles from each of these to the next. At the end the search takes Gauss-Newton steps, and stops when
-neither these nor another simplex lower Delta_v further.
+search begins on a coarse grid and descends from the best points of this grid by the simplex method. It then brackets
+the line tension at which droplets clog, and descends again from several line tensions below this bracket. Their
+distance from the bracket doubles from one to the next. At the end the search takes Gauss-Newton steps. It stops when
+neither these steps nor another simplex lower Delta_v further.
 """
 
 import itertools
@@ -34,8 +34,8 @@ LADDER_DISTANCES = (0, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 LADDER_DRAGS = (0.9, 1, 1.1)
 NUM_STARTS = 3
 CLOG_WIDTH = 0.005  # Width to which the bracket around the line tension of a clog is narrowed, in log Gamma.
-# Steps of the finite differences, in log Gamma and b_0/b_inf. If no droplet clogs, the residuals are linear over the
-# longest steps.
+# Steps of the finite differences, in log Gamma and b_0/b_inf. If no droplet clogs within these steps, the residuals are
+# linear even over the longest steps.
 LONGEST_STEP = np.array([0.05, 0.01])
 SHORTEST_STEP = np.array([5e-4, 1e-4])
 MOST_ROUNDS = 20
@@ -43,8 +43,8 @@ WORTH_IT = 0.999  # A round counts as a gain if it multiplies Delta_v by less th
 NEGLIGIBLE = 0.03  # Gauss-Newton steps shorter than this many standard errors are not taken.
 
 GOOD = 0.2  # A larger Delta_v causes a warning, because speeds then differ by more than a fifth.
-# Smaller systematic residuals cause no warning: even simulations without noise differ smoothly by almost this much, in
-# speed and in shape.
+# Smaller systematic residuals cause no warning: even simulations without noise differ smoothly by almost this much,
+# both in speed and in shape.
 MESH = 0.01
 NEAR_CLOG = 1.1
 
@@ -91,7 +91,7 @@ class Linearised(NamedTuple):
 
 class Search:
     """The simulations of one profile, stored by their places (log Gamma and b_0/b_inf). Simulations run in parallel. A
-    place that was simulated before is seldom simulated again."""
+    place is rarely simulated twice."""
 
     def __init__(self, measured: Profile, simulate: Simulation,
                  progress: Callable[[float, float, float], None]) -> None:
@@ -123,8 +123,8 @@ class Search:
         return self.attempt(found.x * scale), found.success
 
     def linearise_over(self, place: Numbers, step: Numbers) -> Linearised | None:
-        """Finds the linearised residuals by finite differences over a step. Returns None if the droplet clogs a step
-        away, or if the frames do not determine both line tension and drag."""
+        """Finds the linearised residuals by finite differences over a step. Returns None if the droplet clogs within
+        the step, or if the frames do not determine both line tension and drag."""
         below = np.maximum(place - step, [-math.inf, 0])
         beside = [(place[0] + step[0], place[1]), (below[0], place[1]), (place[0], place[1] + step[1]),
                   (place[0], below[1])]
@@ -149,7 +149,7 @@ class Search:
         return found and self.linearise_over(np.array(place), np.clip(found.errors, SHORTEST_STEP, step))
 
     def polish(self, best: Attempt) -> tuple[Attempt, bool]:
-        """Takes Gauss-Newton steps. If these gain nothing, a new simplex follows, because the previous simplex may have
+        """Takes Gauss-Newton steps. If these steps gain nothing, a new simplex follows: the previous simplex may have
         shrunk to a point that is not a minimum."""
         for _ in range(MOST_ROUNDS):
             before = best.delta
@@ -204,7 +204,7 @@ def nearest(attempts: Sequence[Attempt]) -> Attempt:
 
 
 def starts(attempts: Sequence[Attempt]) -> list[tuple[float, float]]:
-    """The places of the best attempts, one for each line tension."""
+    """The parameters (`place`) of the best attempts: at most one for each line tension, and at most NUM_STARTS."""
     best: dict[float, tuple[float, float]] = {}
     for attempt in sorted(attempts, key=lambda attempt: attempt.delta):
         best.setdefault(attempt.place[0], attempt.place)
@@ -244,8 +244,8 @@ def calibrate(measured: Profile, simulate: Simulation,
               progress: Callable[[float, float, float], None] = lambda *_: None) -> Calibration:
     """Minimises Delta_v. The same profile gives the same result every time.
 
-    Errors come from least squares, on the assumption that the frames are independent and have equal relative scatter.
-    The residuals are linearised by finite differences over steps about as long as the errors.
+    Errors come from least squares. They assume that the frames are independent and have equal relative scatter. The
+    residuals are linearised by finite differences over steps about as long as the errors.
     @param simulate  is called from several threads
     @param progress  is called with line tension, drag and Delta_v of each simulation
     @throws what a simulation throws

@@ -18,14 +18,14 @@ from .profiles import Channel, Profile, read_run
 
 Simulation = Callable[[float, float], Profile]  # its arguments are line tension and near-wall drag
 
-# The run starts this many diameters before the first frame. Motion is overdamped, so the droplet has forgotten its
-# start when it reaches the first frame.
+# The run starts this many diameters before the first frame. Motion is overdamped, so at the first frame the start no
+# longer has an effect.
 APPROACH = 0.5
 # A droplet that starts here is usually clear of the wedges [sigma].
 USUAL_START = -2.0
-# The run is long enough for a droplet with a mean speed of 1/30 of its terminal speed to pass.
+# The run is long enough for a droplet to pass with a mean speed of 1/30 of its terminal speed.
 SLOWEST = 30
-# This interval is shorter than any step, so clogrun stores as many samples as it can: one every 64 steps.
+# This interval is shorter than any step, so clogrun stores as many samples as possible: one every 64 steps.
 SAMPLE_INTERVAL = 1e-9
 
 

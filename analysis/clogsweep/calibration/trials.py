@@ -16,7 +16,7 @@ INTERRUPTED = 75
 
 
 class Progress:
-    """Shows how close the best simulations are so far: the largest deviation among the best simulations of all trials.
+    """Shows the quality of the best simulations so far: the largest deviation among the best simulations of all trials.
     Several threads may report simulations."""
 
     def __init__(self, num_trials: int) -> None:
@@ -29,7 +29,7 @@ class Progress:
         with self.lock:
             self.num_simulations += 1
             self.best[trial] = min(self.best[trial], (delta, line_tension, drag))
-            self.line.renew(self.text)
+            self.line.redraw(self.text)
 
     def text(self, seconds: float) -> str:
         trials = f", {self.num_ended}/{len(self.best)} trials done" if len(self.best) > 1 else ""

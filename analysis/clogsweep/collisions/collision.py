@@ -1,5 +1,5 @@
-"""Finds the largest line tension at which droplets break up on a single obstacle, as a function of the offset of their
-path from the obstacle's centre."""
+"""Finds the largest line tension at which droplets break up on a single obstacle. It depends on the offset of the
+droplet's path from the obstacle's centre."""
 
 import math
 import pathlib
@@ -15,13 +15,14 @@ DIAMETER = 0.3  # Diameter of the obstacle [sigma].
 FALL = 3
 BOX = 20
 KEYS = {"preset": "robust", "vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
-# Range of the search: from below the tested range of line tensions to droplets that never break.
+# Range of the search. Its lower end is below the tested range of line tensions; at its upper end droplets never break
+# up.
 TENSIONS = (0.01, 0.6)
 PRECISION = 0.02
 STEPS = 6  # number of parts into which each sweep divides the range
 
-# The largest tried line tension at which the droplet breaks up, and the smallest tried line tension above it, at which
-# the droplet does not break up.
+# The largest tried line tension at which the droplet breaks up. Then the smallest larger one that was tried and at
+# which the droplet does not break up.
 Threshold = tuple[float | None, float | None]
 
 

@@ -2,7 +2,7 @@
 obstacles, and which single obstacles, hold a droplet. The prediction follows from the number of such pairs and
 obstacles in an array.
 
-docs/explanation/predicted.md describes the law and its limits.
+docs/reference/analysis.md describes the law and its limits.
 """
 
 import dataclasses
@@ -26,15 +26,15 @@ DIAMETER_STEP = 0.1  # Step between the mean diameters of the simulated pairs [s
 EXIT = 6  # Distance of the exit behind the obstacles [sigma]. Droplets that hang there do not reach the exit.
 # Length of a fall [sigma]. A droplet that still moves after the time of this fall at terminal speed counts as free.
 LONGEST_FALL = 90
-# Precision of the half-width within which one obstacle holds a droplet [sigma], and number of parts into which each
-# step of the search divides its bracket.
+# Precision of the half-width within which one obstacle holds a droplet [sigma]. Then the number of parts into which
+# each step of the search divides its bracket.
 OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6
 SPEED = 0.03  # Default terminal speed [sqrt(sigma g)].
-SMALLEST_LENGTH = 4  # Predictions below this length were too long by a third and more [sigma].
-# Smallest line tension that causes no warning. At 0.5 up to 42 % of all clogs hang on three obstacles, and at 0.3 up to
-# 85 % (docs/explanation/predicted.md).
+SMALLEST_LENGTH = 4  # Below this length, predictions were too long by a third or more [sigma].
+# Smallest line tension without a warning. At a line tension of 0.5, up to 42 % of all clogs hang on three obstacles,
+# and at 0.3 up to 85 % (docs/reference/analysis.md).
 SOFTEST = 1
-ARRAYS, ARRAY_BOX = 4, 60  # Number of random arrays in which pairs are counted, and their width [sigma].
+ARRAYS, ARRAY_BOX = 4, 60  # number of random arrays in which pairs are counted; width of each array [sigma]
 
 # Keys that describe the array. All other keys describe the droplet. `obstacle-diameter` describes both.
 OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacle-diameter-spread",
@@ -123,8 +123,8 @@ class Droplets:
         return found
 
     def held(self, gap: float, diameter: float, angles: Sequence[float]) -> dict[float, list[bool]]:
-        """Which pairs of obstacles hold a droplet that falls onto the middle between the two obstacles, for each line
-        tension. A pair does not count if a single obstacle would hold the droplet.
+        """For each line tension, whether each pair of obstacles holds a droplet that falls midway between the two. A
+        droplet that one of the obstacles holds alone does not count.
         @param angles  of the pairs [degrees]"""
         halves = [[(gap + diameter) / 2 * part(math.radians(angle))
                    for part in (math.sin, math.cos)]
@@ -148,7 +148,7 @@ def mean_cosine(held: Sequence[bool]) -> float:
     """The mean of cos(angle) over all directions of a pair. Directions in which the pair does not hold the droplet
     contribute 0.
 
-    A pair that holds the droplet is taken to stop every droplet that arrives between the centres of its obstacles.
+    A pair that holds the droplet is assumed to stop every droplet that arrives between the centres of its obstacles.
     Other droplets slide off to the outside.
     @param held  whether the pair holds the droplet at the middle of each interval of ANGLE_STEP, beginning with 0
     degrees
@@ -200,7 +200,7 @@ def predict(droplets: Droplets, array: Array) -> Iterator[Prediction]:
 
 
 def doubts_of(tension: float, length: float) -> list[str]:
-    """Reasons why a predicted length may be wrong by more than a tenth. docs/explanation/predicted.md explains them."""
+    """Reasons why a predicted length may be wrong by more than a tenth. docs/reference/analysis.md explains them."""
     return [word for word, holds in (("soft", tension < SOFTEST), ("crowded", length < SMALLEST_LENGTH)) if holds]
 
 

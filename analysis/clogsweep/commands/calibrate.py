@@ -13,8 +13,8 @@ the laboratory's quantities.
 
 Keys of the droplet and its channel (clogrun channel --help) are given as KEY=VALUE or as options.
 
-Errors (+-) come from the scatter of a trial's frames about the best run, as if the frames were independent. The errors
-exclude those of the model and its mesh, so without noise they are too small.
+Errors (+-) come from the scatter of a trial's frames about the best run, as if the frames were independent. They do not
+include errors of the model and its mesh, so without noise they are too small.
 """
 
 import argparse
@@ -87,8 +87,8 @@ def refuse_contradictions(arguments: argparse.Namespace, names: set[str]) -> Non
 
 
 def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, names: set[str]) -> None:
-    """Refuses keys that contradict the channel stored with a simulated passage. A measured passage needs the channel as
-    keys, because Gamma depends on it."""
+    """Refuses keys that contradict the channel stored with a simulated passage. For a measured passage, the channel
+    must be given as keys, because Gamma depends on it."""
     if stored is None and "orifice" not in names:
         raise UserError("missing orifice (the fitted line tension depends on the channel); "
                         "give its width in droplet diameters, e.g. orifice=0.8, "

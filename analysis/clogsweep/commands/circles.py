@@ -47,10 +47,10 @@ def options() -> argparse.Namespace:
     parser.add_argument("--cell", help="use this cell of a GDSII file, "
                                        "with all cells to which it refers (the top cells)")
     parser.add_argument("--holes", action="store_true",
-                        help="the posts are holes in the drawn areas, whose outer edge is that of the device")
+                        help="the posts are holes in the drawn areas; their outer edge is that of the device")
     parser.add_argument("--posts", choices=("dark", "bright"),
-                        help="brightness of the posts in a picture "
-                             "(dark, unless its border and most of its area are dark)")
+                        help="whether the posts are dark or bright in the picture "
+                             "(bright if the border and most of the area are dark, otherwise dark)")
     parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: use only this rectangle, "
                                                          "in the unit and coordinates that the drawing program shows")
     parser.add_argument("--flow", choices=TURNS, default="right", help="direction of the flow in the drawing (right)")
@@ -95,7 +95,7 @@ def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
 
 
 def refuse_other_unit(arguments: argparse.Namespace, drawing: shapes.Drawing, metres: float) -> None:
-    """@param metres  of the unit that the user gave. @throws UserError  if the drawing states another"""
+    """@param metres  length of the unit that the user gave. @throws UserError  if the drawing has another unit"""
     if drawing.metres is None or np.isclose(metres, drawing.metres, rtol=1e-6, atol=0):
         return
     option = f"--pixel {arguments.pixel}" if arguments.pixel else f"--unit {arguments.unit}"
@@ -115,8 +115,8 @@ def unit_in_words(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str
 
 
 def call_of(device: shapes.Device, drawing: shapes.Drawing, output: pathlib.Path) -> str:
-    """The command that starts a sweep of the device. The border of a picture or of a region is no wall. Entrance and
-    exit are one droplet diameter inside a device that is long enough, because the posts repeat along the flow."""
+    """The command that starts a sweep of the device. The border of a picture or of a region is no wall. In a device
+    that is long enough, entrance and exit are one droplet diameter inside, because the posts repeat along the flow."""
     walls = "" if drawing.frame and len(device.walls) < 2 else "side-walls=on "
     inset = 1 if device.length >= 4 else 0
     ends = f"entrance={inset} exit={device.length - inset:.6g}" if inset else f"exit={device.length:.6g}"
@@ -199,7 +199,7 @@ def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[s
 
 
 def named_slender(device: shapes.Device) -> list[str]:
-    """Names the slender outlines that are to become posts, because scale bars and labels would become posts, too."""
+    """Names the slender outlines that will become posts, because scale bars and labels would become posts, too."""
     found = shapes.slender(device.others)
     places = ", ".join(f"x={x:.5g} um, y={y:.5g} um"
                        for x, y in (outline.mean(axis=0) * device.droplet_micrometres for outline in found[:3]))

@@ -1,5 +1,5 @@
-"""Finds and draws the largest line tension at which droplets break up on a single obstacle, for each offset from its
-centre.
+"""Finds and draws the largest line tension at which droplets break up on a single obstacle, for each offset of their
+path from its centre.
 
     python3 -m clogsweep collision --output collision                     # collision.png, collision.pdf; the numbers as CSV
     python3 -m clogsweep collision --output fine vertices=512 break-up-neck=0.05 --offsets 0,0.1,0.3
@@ -41,8 +41,8 @@ def offsets(word: str) -> list[float]:
 def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
     parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE",
-                        help="keys of clogsweep; vertices, terminal-speed, break-up-neck, max-time have defaults "
-                        "of their own here")
+                        help="keys of clogsweep; vertices, terminal-speed, break-up-neck, max-time have other "
+                        "defaults here")
     command_line.add_output(parser, "name of the picture; .png and .pdf are made", ".png", ".pdf", required=True)
     parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35",
                         help="offsets of the droplet's path from the obstacle's centre [sigma]")

@@ -37,8 +37,8 @@ def speak_as(name: str) -> None:
 
 
 def name() -> str:
-    """Name of the command in its messages. A program that calls it under another name, such as clogfit report, sets
-    CLOG_CALLED_AS."""
+    """Name of the command in its messages. If a program calls the command under another name, such as clogfit report,
+    it sets CLOG_CALLED_AS."""
     return os.environ.get("CLOG_CALLED_AS") or _own_name or pathlib.Path(sys.argv[0]).name
 
 
@@ -196,8 +196,8 @@ def tell(text: object) -> None:
 
 
 def _give_up(stream: TextIO) -> None:
-    """Redirects a failed stream to /dev/null. At exit Python would try to write the rest of it, and return 120 when
-    that fails."""
+    """Redirects a failed stream to /dev/null. Otherwise Python would try to write the rest of it at exit, fail again,
+    and return 120."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, stream.fileno())
     os.close(null)
@@ -234,9 +234,9 @@ def _whole_output() -> Iterator[None]:
 
 
 def use_own_settings_of_pictures() -> None:
-    """Makes pictures independent of the user's settings of matplotlib, which may name a program to show windows that is
-    not installed here (MPLBACKEND in a notebook), or let LaTeX set the text where there is none. The module `style`
-    applies the settings when it is loaded."""
+    """Makes pictures independent of the user's settings of matplotlib. Such settings may name a program for windows
+    that is not installed here (MPLBACKEND in a notebook), or select LaTeX where it is not installed. The module `style`
+    applies our settings when it is loaded."""
     os.environ["MPLBACKEND"] = "agg"
     outputs.are_of_command = True
     if "matplotlib" in sys.modules:

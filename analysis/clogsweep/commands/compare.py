@@ -4,9 +4,9 @@
     python3 -m clogsweep compare sweep.h5 --by friction
 
 Every number comes from clogfit compare, which has the same options; `clogfit compare --picture NAME` draws the same
-picture. Bars are confidence intervals. The interval of a solid bar comes from pairs of runs with the same seed, that of
-a dashed bar from the numbers of clogs alone. A hollow marker means a doubt about one of the two lengths, which the
-picture explains, as it states failed and unfinished runs.
+picture. Bars are confidence intervals: solid bars come from pairs of runs with the same seed, dashed bars from the
+numbers of clogs alone. A hollow marker means a doubt about one of the two lengths. The picture explains the doubts, and
+counts failed and unfinished runs.
 """
 
 import json
@@ -23,7 +23,7 @@ def body() -> int:
     parser = Parser(__doc__)
     parser.add_argument("sweeps", type=pathlib.Path, nargs="+",
                         help="files of clogsweep --output; each further file is compared with the first")
-    parser.add_argument("--by", help="key whose values are compared with each other")
+    parser.add_argument("--by", help="key; its values are compared with each other")
     parser.add_argument("--within",
                         help="the two clogs of a pair count as one place if they are within this distance [sigma]")
     parser.add_argument("--confidence", help="confidence level of the intervals (0.95)")

@@ -58,7 +58,7 @@ def body() -> int:
     else:
         with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
             source = stored.source(stored.attributes(file))
-        # Droplet sizes come first; parameters that may follow from others come last.
+        # Droplet sizes come first. Parameters that may follow from other parameters come last.
         parameters = sorted((name for name, column in columns.items()
                              if column.get("role") == "parameter" and column.get("parameter_role") != "ensemble"),
                             key=lambda name:

@@ -1,5 +1,5 @@
-"""Finds the exponent alpha and the strength b_0/b_inf of the near-wall drag from the speeds of a droplet
-that moves along a wall: a straight line through log(v/(v_t - v)) against log d, by least squares.
+"""Finds the exponent alpha and the strength b_0/b_inf of the near-wall drag from the speeds of a droplet that moves
+along a wall. The command fits a straight line to log(v/(v_t - v)) against log d by least squares.
 
   clogfit drag speeds.csv
   clogfit drag speeds.csv --diameter 0.98mm --speed 0.65mm/s

@@ -36,7 +36,7 @@ def body() -> int:
     parser.add_argument("--film", action="store_true", help="make a film instead: .mp4 (ffmpeg) or .gif")
     parser.add_argument("--pictures", action="store_true", help="make numbered pictures in OUTPUT-frames instead")
     parser.add_argument("--colour", choices=film.COLOURS, default="speed",
-                        help="what the colours in a film show (speed)")
+                        help="quantity that the colours in a film show (speed)")
     parser.add_argument("--rate", type=command_line.whole(1), default=20, help="frames of a film per second (20)")
     parser.add_argument("--most-frames", type=command_line.whole(1), default=600,
                         help="largest number of frames of a film (600)")

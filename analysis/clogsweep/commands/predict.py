@@ -12,7 +12,7 @@ falls onto a pair of obstacles. Other droplets fall onto a single obstacle at se
 offset at which the obstacle holds a wrapped droplet. These runs take half a minute for a large line tension. Then the
 command counts the obstacles and pairs of the array. It prints lengths as CSV, with the reasons to doubt them: soft
 (line tension below 1: clogs on three obstacles and more are not predicted), crowded (length below 4 sigma: the
-prediction is too long, because other obstacles come between). docs/explanation/predicted.md says where the predictions
+prediction is too long, because other obstacles are in between). docs/reference/analysis.md says where the predictions
 hold.
 """
 

@@ -33,12 +33,12 @@ from ..tools.lists import number, numbers
 from . import command_line
 
 PASSED_ON = ("lab", "attempts", "isolate", "report-seconds", "master-computes", "instruction-set")
-BLOCKS_OF_A_VALUE = 50  # largest number of blocks of seeds of one value, unless --most-seeds is given
+BLOCKS_OF_A_VALUE = 50  # without --most-seeds, a value gets at most this number of blocks of seeds
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", metavar="KEY[,KEY]", help="one key, or two with a comma between; the outermost values given for a key are its bounds")
+    parser.add_argument("keys", metavar="KEY[,KEY]", help="one key, or two separated by a comma; the outermost given values of a key are its bounds")
     parser.add_argument("settings", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUES", help="keys of clogsweep")
     parser.add_argument("--config", help="file with lines `key = value`")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="HDF5 file to create, to resume or to add to")
@@ -46,7 +46,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
                         help="curve=20%%, peak=10%%, crossing=10:5%% or, for a lattice, critical-angle=0.5")
     parser.add_argument("--budget", metavar="H", help="largest number of core-hours of all runs together, e.g. 10h")
     parser.add_argument("--max-hours", type=command_line.between(0, 1e9, "hours"), default=math.inf, metavar="H",
-                        help="stop after this number of hours in the same way as after a signal")
+                        help="stop the sweep after this number of hours")
     parser.add_argument("--most-seeds", type=command_line.whole(1), metavar="N",
                         help=f"largest number of seeds of a value ({BLOCKS_OF_A_VALUE} times `seeds`)")
     parser.add_argument("--same-seeds", action="store_true", help="use the same seeds for all values")
@@ -109,7 +109,7 @@ def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, 
 
 
 def changing_density(keys: Sequence[str], config: dict[str, str]) -> str:
-    """Says that a density of obstacles changes with a refined key; otherwise returns an empty text."""
+    """A sentence that a density of obstacles changes with a refined key; otherwise an empty text."""
     density, sizes = config["obstacle-density"], [key for key in keys if key in ("obstacle-gap", "obstacle-diameter")]
     if config["obstacle-layout"] != "random" or not sizes or not math.isnan(number(density)):
         return ""
@@ -169,8 +169,8 @@ def body() -> int:
         search = search_of(arguments, keys, values, plan_of)
         if (note := changing_density(keys, values)) and not arguments.quiet:
             print(f"python3 -m clogsweep refine: {note}", file=sys.stderr)
-        # Searches with the same settings and the same first round share their files, even if their goals differ,
-        # because they can use the same rounds.
+        # Searches with the same settings and the same first round share their files, even if their goals differ. They
+        # can use the same rounds.
         content = config + driver.points_text(keys, search.first_round()) + _circles(values["obstacles"])
         name = "refine-" + hashlib.sha256(content.encode(errors="surrogateescape")).hexdigest()[:8]
         beside = folder / name if arguments.dry_run else arguments.output.with_name(f"{arguments.output.name}.{name}")

@@ -11,8 +11,8 @@ from ..tools.hints import Numbers
 from .model import Curve
 
 NUM_DRAWS = 2000
-# Added to the diagonal as a multiple of the largest variance, so that the covariance is positive definite in spite of
-# rounding.
+# This multiple of the largest variance is added to the diagonal, so that rounding does not make the covariance
+# indefinite.
 FIRST_JITTER = 1e-10
 
 
@@ -35,8 +35,8 @@ class Peak:
 
 @dataclasses.dataclass(frozen=True)
 class Crossing:
-    """The place at which a curve crosses a length, with its interval. Place and interval are logarithms of the key. The
-    interval ends where the band crosses the length. An end is infinite if it would be beyond the places."""
+    """The place at which a curve crosses a length, with its interval, as logarithms of the key. The interval ends where
+    the band crosses the length. If an end would be outside the range of places, it is infinite."""
 
     place: float
     lower: float
@@ -45,7 +45,8 @@ class Crossing:
 
 
 def normal_deviate(confidence: float) -> float:
-    """Half the width of an interval of the normal distribution with this confidence, in standard deviations.
+    """The half-width of the interval that contains a normally distributed number with this confidence, in standard
+    deviations.
     @throws ValueError  unless 0 < confidence < 1"""
     if not 0 < confidence < 1:
         raise ValueError("a confidence is between 0 and 1")
@@ -60,7 +61,7 @@ def band(curve: Curve, confidence: float) -> Numbers:
 
 
 def drawn_curves(curve: Curve, number: int = NUM_DRAWS, seed: int = 1) -> Numbers:
-    """Draws curves of log lambda from the posterior, one per row. Each seed gives the same curves every time. Curves of
+    """Draws curves of log lambda from the posterior, one per row. The same seed always gives the same curves. Curves of
     different seeds are independent."""
     variance = max(float(np.max(np.diagonal(curve.covariance))), float(np.finfo(float).tiny))
     jitter = FIRST_JITTER
@@ -72,7 +73,7 @@ def drawn_curves(curve: Curve, number: int = NUM_DRAWS, seed: int = 1) -> Number
             jitter *= 10
             if jitter >= 1:
                 raise
-    # NumPy promises that RandomState gives the same numbers in every version.
+    # NumPy guarantees that RandomState gives the same numbers in every version.
     return curve.mean + np.random.RandomState(seed).standard_normal((number, len(curve.mean))) @ factor.T
 
 
@@ -136,8 +137,8 @@ def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -
     for i in np.flatnonzero((above[:-1] < 0) != (above[1:] < 0)):
         is_upward = bool(above[i] < 0)
         before, after = (above + half, above - half) if is_upward else (above - half, above + half)
-        # The places before the crossing where the whole band is still below the length, or above the length if the
-        # curve falls.
+        # The places before the crossing at which the whole band is still below the length (or above it, if the curve
+        # falls).
         outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)
         outside_after = np.flatnonzero((after[i + 1:] >= 0) == is_upward) + i + 1
         crossings.append(Crossing(zero(above, i), zero(before, outside_before[-1]) if outside_before.size else -np.inf,

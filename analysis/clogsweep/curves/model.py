@@ -3,9 +3,9 @@
 Suppose that the runs at a place travelled the total distance S and clogged d times. Then d is a Poisson count with
 exposure S. With f = log lambda the log likelihood is log L = -d f - S exp(-f), which is concave in f (Lawless,
 Statistical Models and Methods for Lifetime Data, chapter 4). The kernel is a product of Matern kernels with smoothness
-5/2, one for each key. The posterior is Laplace's approximation (Rasmussen and Williams, Gaussian Processes for Machine
-Learning, algorithms 3.1 and 3.2). The posterior is averaged over amplitudes and correlation lengths, with the marginal
-likelihood as the weight.
+5/2, one for each key. Laplace's approximation gives the posterior (Rasmussen and Williams, Gaussian Processes for
+Machine Learning, algorithms 3.1 and 3.2). The posterior is averaged over amplitudes and correlation lengths, with the
+marginal likelihood as the weight.
 """
 
 from __future__ import annotations
@@ -19,16 +19,15 @@ from scipy import linalg
 
 from ..tools.hints import Numbers
 
-# Prior variance of the process's mean about the common log lambda of all points. A standard deviation is a factor of
-# e^10 in lambda.
+# Prior variance of the process's mean about the common log lambda of all points. The standard deviation corresponds to
+# a factor of e^10 in lambda.
 LEVEL_VARIANCE = 100.0
-# Added to the diagonal as a multiple of the kernel's variance, so that the matrix is positive definite in spite of
-# rounding.
+# This multiple of the kernel's variance is added to the diagonal, so that rounding does not make the matrix indefinite.
 JITTER = 1e-8
 # Standard deviations of log lambda, equivalent to factors of lambda from 1.3 to 3000.
 AMPLITUDES = (0.25, 0.5, 1, 2, 4, 8)
 RANGE_FRACTIONS = (0.1, 0.16, 0.25, 0.4, 0.63, 1, 1.6, 3)  # Correlation lengths, divided by the range of the places.
-WEIGHT_USED = 0.98  # The most likely scales are used until their weights sum to this. The others change nothing.
+WEIGHT_USED = 0.98  # The most likely scales are used until their weights sum to this. The others have no effect.
 MOST_STEPS = 200
 MOST_HALVINGS = 40
 SETTLED = 1e-10  # Newton's iteration ends when the log posterior gains less than this.
@@ -158,8 +157,8 @@ def curve_of_scales(points: Points, scales: Hyperparameters, places: Numbers) ->
 
 
 def all_scales(places: Numbers) -> list[Hyperparameters]:
-    """All combinations of amplitudes and correlation lengths. Amplitudes and lengths are spread evenly on a logarithmic
-    scale. The correlation length of a key with a single value is arbitrary."""
+    """All combinations of amplitudes and correlation lengths, both evenly spread on a logarithmic scale. The
+    correlation length of a key with a single value is arbitrary."""
     ranges = np.ptp(places, axis=0)
     lengths = [[fraction * extent for fraction in RANGE_FRACTIONS] if extent > 0 else [1.0] for extent in ranges]
     return [Hyperparameters(amplitude, chosen) for amplitude in AMPLITUDES for chosen in itertools.product(*lengths)]

@@ -3,7 +3,7 @@
 Groups with different physical parameters belong to different curves. A numerical parameter, such as `inertia` or `box`,
 usually does not separate curves, because some parameter sets need another box or more time than others. It separates
 curves if the sweep varies this parameter while the physics stays the same. Values that follow from other parameters
-never separate curves. Such values are automatic values, the name of the preset, and the density of a saturated array.
+never separate curves: automatic values, the name of the preset, and the density of a saturated array.
 """
 
 from __future__ import annotations
@@ -50,8 +50,7 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 
 
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
-    """Whether the parameter's value follows from other parameters. A value that the sweep itself lists never follows
-    from others."""
+    """Whether the parameter's value follows from other parameters. A value in a list of the sweep never does."""
     name = column["name"]
     return name not in fit["lists"] and (name in group["automatic"] or name in fit.get("following", ()))
 
@@ -104,8 +103,8 @@ def refuse_key(name: str, fit: Fit) -> Column:
 
 
 def are_shares(groups: Iterable[Group]) -> bool:
-    """Whether the sweep varies the density of random arrays as a share of the saturated density, so that the density
-    depends on gap and diameter. There are then fewer shares than densities."""
+    """Whether the sweep varies the density of random arrays as a share of the saturated density. The density then
+    depends on gap and diameter, and there are fewer shares than densities."""
     given = [group for group in groups if group["obstacle_filling"] == "density"]
     return len({_share(group) for group in given}) < len({_rounded(group["obstacle_density"]) for group in given})
 
@@ -142,8 +141,7 @@ def _key(values: dict[str, Any]) -> tuple[tuple[str, Any], ...]:
 
 
 def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) -> set[str]:
-    """Names of the numerical parameters that vary among groups that have the same physics and the same values of the
-    keys."""
+    """Names of numerical parameters that vary among groups with the same physics and the same values of the keys."""
     seen: dict[tuple[Any, ...], dict[str, set[Any]]] = {}
     with_share = are_shares(fit["groups"])
     for index in groups:
@@ -182,15 +180,16 @@ def parameter_text(name: str, value: Any) -> str:
 
 
 def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Excluded]]:
-    """The groups of each curve that can be drawn, and all other groups with the reason why they cannot. `shared`
-    contains the parameters in which the curves differ. Parameters that are the same in all curves are left out."""
+    """The groups of each curve that can be drawn. All other groups come with the reason why they belong to no curve.
+    `shared` contains the parameters in which the curves differ; parameters that are equal in all curves are
+    excluded."""
     excluded, useful = [], []
     for index, group in enumerate(fit["groups"]):
         if not (group["total_distance"] or 0) > 0:
             excluded.append(Excluded(index, "no run of it has covered any distance"))
         elif group["exit"]:
-            # In a short device only few places hold droplets. So the clogs in this device tell nothing about values of
-            # the key that were not run.
+            # In a short device only few places hold droplets. So clogs at one value of the key do not inform the curve
+            # at other values.
             excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
         else:
             useful.append(index)
@@ -241,8 +240,7 @@ def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
 
 
 def have_common_obstacles(members: Members, keys: Iterable[Column], seeds: Sequence[set[int]]) -> bool:
-    """Whether the points of a curve share obstacles. Points share obstacles if they share seeds and no key shapes the
-    array."""
+    """Whether the points of a curve share obstacles: if they share seeds, and no key shapes the array."""
     if any(key["shapes_array"] for key in keys):
         return False
     own = [seeds[index] for index in members.groups]

@@ -24,8 +24,8 @@ def shortest(value: Any) -> str:
 
 
 def with_interval(values: Mapping[str, Any], name: str) -> str:
-    """A number with its interval, such as `0.51 (0.44 to 0.60)`. The interval is left out if one of its ends is
-    unknown."""
+    """A number with its interval, such as `0.51 (0.44 to 0.60)`. If an end of the interval is unknown, only the number
+    is printed."""
     value, lower, upper = (values[f"{name}{end}"] for end in ("", "_lower", "_upper"))
     return f"{value:.3g}" if lower is None or upper is None else rounded.with_interval(value, lower, upper)
 
@@ -108,8 +108,8 @@ def comma_separated(answer: dict[str, Any]) -> str:
 
 
 def peaks(answer: dict[str, Any]) -> str:
-    """The peaks as CSV, with a line for every curve. The line contains the peak, unless the curve may be highest at an
-    end of the range of values."""
+    """The peaks as CSV, with a line for every curve. The peak is missing if the curve may be highest at an end of the
+    range of values."""
     shared, names = list(answer["curves"][0]["shared"]), [f"{name}{end}" for name in [*answer["keys"], ALL[0]] for end in ("", "_lower", "_upper")]
     found = [(curve["shared"], curve["peak"], curve["peak"]["probability_between_borders"]) for curve in answer["curves"]]
     return _comma_separated([[*shared, *names, "probability_between_borders"], *(

@@ -14,8 +14,8 @@ from .shapes import Box, Drawing, fitted_circle, holds, holds_centre, left_out
 from . import walls
 from .walls import SHARE, is_rectangle
 
-# Outlines touch if the gap between them is at most this fraction of the size of all outlines. A small gap can come from
-# corners that a file rounds.
+# Outlines touch if the gap between them is at most this fraction of the size of all outlines. A file that rounds
+# corners can cause such a small gap.
 NEAR = 1e-6
 SAME = 1e-8  # Corners are the same if they differ by at most this fraction of the largest coordinate.
 
@@ -81,8 +81,9 @@ def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None
 
 
 def filled(boundaries: list[Numbers], rule: str) -> Any:
-    """The area within boundaries. @param rule  the fill-rule of SVG: with `evenodd`, places within an odd number of
-    boundaries are filled; with `nonzero`, those around which clockwise and counter-clockwise boundaries differ in number
+    """The area within boundaries.
+    @param rule  the fill-rule of SVG. With `evenodd`, a place is filled if it is within an odd number of boundaries.
+    With `nonzero`, it is filled if the numbers of clockwise and of counter-clockwise boundaries around it differ.
     @throws UserError  if a boundary crosses itself"""
     ops = library("shapely.ops", "python3-shapely")
     shapes = [polygon(corners) for corners in boundaries]
@@ -187,9 +188,9 @@ def unite(drawing: Drawing, circle_tolerance: float) -> None:
 
 
 def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
-    """Pairs of outlines whose bounding boxes touch. Outlines as long and as wide as the drawing are left out, because
-    they are edges of the device. Rectangles as long as the drawing are walls, which meet no other outlines. Only where
-    two of them lie side by side and one has notches, as pieces of an area with holes have, do they meet."""
+    """Pairs of outlines with bounding boxes that touch. Outlines as long and as wide as the drawing are excluded,
+    because they are edges of the device. Rectangles as long as the drawing are walls, and touch no other outlines.
+    But two such rectangles side by side, one of them with notches, are treated as pieces of an area with holes."""
     if len(outlines) < 2:
         return []
     lows, highs = (np.array([end(outline, axis=0) for outline in outlines]) for end in (np.min, np.max))
@@ -200,7 +201,7 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
     near = NEAR * np.abs(np.ptp(np.vstack(outlines), axis=0)).max()
 
     def may_meet(i: int) -> Any:
-        """Whether each outline before the i-th may be united with it if they touch."""
+        """For each outline before the i-th: whether it may be united with the i-th one if they touch."""
         if is_post[i]:
             return is_post[:i]
         are_pieces = is_wall[:i] & (is_long[:i] == is_long[i]).all(axis=1) & (is_notched[:i] | is_notched[i])
@@ -211,7 +212,7 @@ def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
 
 
 def leave_out_beyond(drawing: Drawing, page: Box) -> None:
-    """Leaves out what is wholly outside the page, and notes how many objects were left out, and where."""
+    """Removes everything that is completely outside the page, and notes how many objects were removed, and where."""
     visible: dict[str, list[Any]] = {"circles": [], "outlines": [], "lines": []}
     beyond: list[Numbers] = []
     for kind, kept in visible.items():
@@ -267,13 +268,13 @@ def cut_at_page(drawing: Drawing, page: Box, tolerance: float) -> None:
 
 
 def cut(drawing: Drawing, region: Box, tolerance: float, name: str) -> tuple[int, int]:
-    """Keeps the part of the drawing that is in a region. Round posts that cross the region's border stay whole, or are
-    left out if their centre is outside; other outlines and lines are cut at the border, and outlines around the whole
-    region are left out.
+    """Keeps the part of the drawing that is in a region. A round post on the region's border is kept complete if its
+    centre is inside, and removed if it is outside. Other outlines and lines are cut at the border. Outlines around the
+    whole region are removed.
     @param region  left, bottom, right, top
     @param tolerance  as in fitted_circle()
     @param name  of the region
-    @return the number of outlines, circles and lines outside the region, and that of outlines around it"""
+    @return the number of outlines, circles and lines outside the region, and the number of outlines around it"""
     geometry = library("shapely.geometry", "python3-shapely")
     box = geometry.box(*region)
     number = len(drawing.circles) + len(drawing.outlines) + len(drawing.lines)

@@ -44,8 +44,8 @@ def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
 
 
 def metres_of(document: Any, path: pathlib.Path) -> float | None:
-    """The length of the unit in $INSUNITS. @throws UserError  if the unit cannot be meant, such as a mile or a light
-    year"""
+    """The length of the unit in $INSUNITS. @throws UserError  for a unit that is impossible for a device, such as a
+    mile or a light year"""
     code = document.header.get("$INSUNITS", UNITLESS)
     if code == UNITLESS:
         return None

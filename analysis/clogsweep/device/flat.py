@@ -17,16 +17,16 @@ from ..tools.hints import Numbers
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 LINK = "{http://www.w3.org/1999/xlink}href"
-# What is no shape, and attributes and properties that would make librsvg draw pixels, or markers.
+# Elements that are no shapes, and attributes and properties with which librsvg would draw pixels, or markers.
 NO_SHAPES = ("text", "image", "foreignObject")
 PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end", "mix-blend-mode", "isolation",
           "enable-background")
-# CSS that librsvg does not know, and that would move shapes or give them another size or colour.
+# CSS that librsvg does not know. In a browser it would move shapes or change their size or colour.
 TRANSFORMS = {"transform-origin": r"(?<![\w-])transform-origin\s*[:=]",
               "transform-box": r"(?<![\w-])transform-box\s*[:=]",
               "translate, rotate or scale": r"(?<![\w-])(?:translate|rotate|scale)\s*:"}
 LENGTHS = {"lengths that depend on a font or a window": r"(?<![\w-])(?:[cr]?[xy]|r|width|height|[xy][12])\s*[:=]\s*[\"']?\s*[-+\d.]+(?:r?em|ex|ch|v[wh]|vmin|vmax)\b"}
-FUNCTION = r"(?:([\w-]+)\s*[:=]\s*[\"']?[^;:=\"'{}<>]*?)?\b(var|calc)\("  # the property, if it can be found, and the function
+FUNCTION = r"(?:([\w-]+)\s*[:=]\s*[\"']?[^;:=\"'{}<>]*?)?\b(var|calc)\("  # the property, if it is found, and the function
 IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b",
            "animations": r"<(?:\w+:)?(?:animate\w*|set)\b|(?<![\w-])animation(?:-name)?\s*:",
            "blend modes": r"mix-blend-mode\s*:\s*(?!normal)\w", "masks": r"(?<![\w-])mask\s*[:=]",
@@ -34,8 +34,8 @@ IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b"
            "markers": r"(?<![\w-])marker(?:-start|-mid|-end)?\s*[:=](?!\s*[\"']?\s*none\b)",
            "media of style sheets": r"<(?:\w+:)?style[^>]*\smedia\s*=",
            "style sheets in other files": r"<\?xml-stylesheet|<(?:\w+:)?link\b"}
-# The longer side of the page, and the canvas around it with what is outside the page. librsvg has single precision, in
-# which powers of two are exact.
+# Two sizes: the longer side of the page, and the canvas around the page, which also has everything outside the page.
+# librsvg has single precision, in which powers of two are exact.
 PAGE, CANVAS, BEFORE = 2**16, 2**20, 2**19
 SIZE = 2**22  # Size of the flat drawing [px]. Its coordinates are multiples of 1/256.
 STEP = 1e-7  # Coordinates in pixels of the page are multiples of this fraction of its longer side.
@@ -49,26 +49,27 @@ class Flat:
     longer: float  # The longer side of the page [px].
 
     def to_page(self, points: Numbers) -> Numbers:
-        """Points (n, 2) in pixels of the page, without the rounding of librsvg: on the page's border they stay there."""
+        """Points (n, 2) in pixels of the page, without the rounding of librsvg. Points on the page's border stay on
+        it."""
         shares = (np.asarray(points) * CANVAS / self.size - BEFORE) / PAGE
         return np.round(shares / STEP) * STEP * self.longer
 
     @property
     def pixel(self) -> float:
-        """One of its own units [px]."""
+        """The size of the drawing's unit [px]."""
         return CANVAS / self.size / PAGE * self.longer
 
     @property
     def size(self) -> float:
-        """In its own units, which are pixels or points with different versions of librsvg."""
+        """The width in the drawing's own units, which are pixels or points, depending on the version of librsvg."""
         return float(self.root.get("width"))
 
 
 def flatten(root: Any, width: float, height: float, path: pathlib.Path) -> Flat:
-    """Draws all that is visible.
+    """Draws everything that is visible.
     @param root  stays unchanged
     @param width, height  of the page [px]
-    @param path  for messages. @throws UserError  if librsvg is not there, or cannot draw this"""
+    @param path  for messages. @throws UserError  if librsvg is missing, or cannot draw this"""
     inner = without_pixels(copy.deepcopy(root))
     longer = max(width, height)
     inner.attrib.setdefault("viewBox", f"0 0 {width!r} {height!r}")
@@ -84,7 +85,7 @@ def flatten(root: Any, width: float, height: float, path: pathlib.Path) -> Flat:
 
 
 def without_pixels(root: Any) -> Any:
-    """Takes out what librsvg would draw as pixels."""
+    """Removes everything that librsvg would draw as pixels."""
     properties = re.compile(rf"(?<![\w-])(?={'|'.join(PIXELS)})", re.IGNORECASE)
     for element in root.iter():
         if element.tag in [NAMESPACE + name for name in NO_SHAPES]:
@@ -113,7 +114,7 @@ def drawn(svg: bytes, path: pathlib.Path) -> bytes:
 
 
 def replace_uses(flat: Any) -> None:
-    """Replaces references to groups by these groups. librsvg makes references of groups with an opacity."""
+    """Replaces each <use> of a group by the group itself. librsvg writes a group that has an opacity as a <use>."""
     originals = {element.get("id"): element for element in flat.iter(NAMESPACE + "g")}
     for parent in list(flat.iter()):
         for index, child in enumerate(list(parent)):

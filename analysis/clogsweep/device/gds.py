@@ -13,7 +13,7 @@ from ..tools.errors import UserError
 from .libraries import library
 from .shapes import Drawing
 
-# A polygon with this many corners is wider than a circle of the same area by 1e-4 of the diameter.
+# A polygon with this many corners is 1e-4 of the diameter wider than a circle of equal area.
 CORNERS_OF_DISC = 128
 
 
@@ -34,7 +34,7 @@ def read_gds(path: pathlib.Path, layer: str | None, cell: str | None = None) -> 
     if missing:
         raise UserError(f"cannot read {path} (it lacks the cells {', '.join(sorted(missing))}, to which it refers); "
                         "save it with these")
-    # A gdspy that leaves a CellArray here does not call _create_array().
+    # If this version of gdspy leaves a CellArray here, it does not call _create_array().
     if any(isinstance(part, gdspy.CellArray) for part in references):
         raise UserError(f"cannot read {path} (gdspy {gdspy.__version__} may misplace its arrays of cells); "
                         "flatten them in the layout program")
@@ -64,8 +64,8 @@ def exact_library(gdspy: Any) -> Any:
     """gdspy's reader with two changes. An array becomes one reference for each of its places, and a round path without
     length becomes a disc.
 
-    gdspy's own arrays have only two spacings, along the axes of the cell. So gdspy misplaces an array whose lattice is
-    oblique, or is turned by another angle than the cell."""
+    gdspy's own arrays have only two spacings, along the axes of the cell. So gdspy misplaces an array with an oblique
+    lattice, or with a lattice that is turned by another angle than the cell."""
     class Library(gdspy.GdsLibrary):  # type: ignore[misc]
         def _create_path(self, *, xy: Any, **path: Any) -> Any:
             """@throws UserWarning  if the path has neither length nor round ends"""

@@ -31,7 +31,8 @@ def join(drawing: Drawing) -> None:
     shapes = [geometry.LineString(piece) for piece in meeting([piece for _, piece in pieces], tolerance)]
     faces: list[Any] = []
     left = list(range(len(pieces)))
-    # Lines that meet at their ends come first, so that a centre line cuts no post in two. Lines that cross come second.
+    # Lines that meet at their ends come first. In this way a centre line does not cut a post in two. Lines that cross
+    # come second.
     for cut in (distinct, ops.unary_union):
         found = [face for face in ops.polygonize(cut([shapes[index] for index in left])) if face.is_valid]
         near = ops.unary_union([face.boundary for face in found]).buffer(tolerance)

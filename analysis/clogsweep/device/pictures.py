@@ -28,9 +28,9 @@ UNITS_OF_IMAGEJ = {"micron": "um", "microns": "um", "\\u00b5m": "um", "inch": "i
 
 def read_picture(path: pathlib.Path, posts: str | None) -> Drawing:
     """Reads the outlines of the dark or the bright parts. Outlines run between pixels, and the unit of length is a
-    pixel. Specks of a few pixels are left out.
-    @param posts  dark or bright. If None, posts are bright if the border and most of the picture are dark, or if bright
-    parts are on a transparent ground; otherwise they are dark"""
+    pixel. Specks of a few pixels are excluded.
+    @param posts  dark or bright. If None, posts are bright in two cases: the border and most of the picture are dark,
+    or bright parts are on a transparent ground. Otherwise they are dark."""
     measure, filters = (library(f"skimage.{name}", "python3-skimage") for name in ("measure", "filters"))
     tags = tags_of(path)
     image = grey(path, tags)
@@ -121,7 +121,7 @@ def metres_of(path: pathlib.Path, tags: dict[int, Any]) -> float | None:
 
 
 def printed(tags: dict[int, Any]) -> str:
-    """Words that state the size of a pixel according to the resolution of a TIFF. The resolution often belongs to a
-    printer."""
+    """Words that give the size of a pixel according to the resolution of a TIFF. Often a TIFF has the resolution of a
+    printer instead."""
     metres, number = METRES_IN_TIFF.get(tags.get(RESOLUTION_UNIT, 0), 0.0), float(tags.get(X_RESOLUTION, 0))
     return f" (its resolution would mean {metres / number * 1e6:.6g}um, if that is not a printer's)" if metres and number else ""

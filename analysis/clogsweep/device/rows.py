@@ -36,15 +36,16 @@ class Rows:
     """The resulting posts. Lengths are in droplet diameters."""
 
     device: Device
-    corner: float  # The largest radius of circles in a row.
+    # Radius of the circles of a row, to which corners are rounded; smaller in posts that are too thin for it.
+    corner: float
     farthest: float  # Largest distance of a drawn outline from the circles, which do not fill its corners.
     roughness: float
 
 
 def as_rows(device: Device, corner: float) -> Rows:
     """The posts of the device, with rows of circles in place of each outline that is not round.
-    @param corner  radius to which corners are rounded. If a post is too thin for this radius, nearly half of its width
-    is taken.
+    @param corner  radius to which corners are rounded. If a post is too thin for this radius, the radius is nearly half
+    of its width.
     @throws UserError  if an outline crosses itself"""
     geometry = shapely("geometry")
     frame = geometry.box(0, 0, device.length, device.width)
@@ -76,7 +77,7 @@ def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
 
 
 def parts(shape: Any) -> list[Any]:
-    """The polygons of a shape, which consists of one or several."""
+    """The polygons of a shape. A shape may consist of several polygons."""
     return [part for part in getattr(shape, "geoms", [shape]) if part.geom_type == "Polygon" and part.area > 0]
 
 
@@ -88,7 +89,7 @@ def deepest(polygon: Any) -> tuple[Any, float]:
 
 
 def cores(polygon: Any, corner: float) -> list[tuple[Any, float]]:
-    """The cores of a polygon. Circles of the returned radius whose centres are on the edge of a core lie within the
+    """The cores of a polygon. Circles of the returned radius with their centres on the edge of a core are within the
     polygon and touch its outline. In a thin polygon this radius is smaller than `corner`."""
     _, half_width = deepest(polygon)
     radius = min(corner, 0.9 * half_width)

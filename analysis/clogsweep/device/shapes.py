@@ -19,7 +19,7 @@ from .libraries import library
 from .walls import area, centroid
 
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3, "mil": 25.4e-6}
-MARGIN = 0.5  # Distance between the posts and the edge of a device whose edge is not drawn [sigma].
+MARGIN = 0.5  # Distance from the posts to the edge of a device, if the drawing has no edge [sigma].
 NEAR = 0.01  # A line that is part of the edge may be this far outside the edge [sigma].
 ROUNDED = 1e-6  # The centre of a fitted circle is rounded by at most this fraction of the size of the drawing.
 SAME = 1e-3  # Two circles are the same if they differ by at most this fraction of the diameter.
@@ -34,7 +34,7 @@ class Drawing:
     """A drawing as read from its file. Lengths are in the drawing's own unit, and y points upwards."""
 
     circles: list[tuple[float, float, float]]  # Each has x, y and diameter.
-    # Corners (n, 2). The last corner is joined to the first, unless the border of a picture cuts the outline.
+    # Corners (n, 2) of each outline. Its last corner is joined to its first, unless the border of a picture cuts it.
     outlines: list[Numbers]
     metres: float | None  # Length of the drawing's unit [m]; None if the file does not state it.
     frame: Box | None = None  # A picture, or the region that the user gave.
@@ -50,7 +50,7 @@ class Drawing:
     unit_hint: str = ""  # Words that name a unit that the drawing may mean.
     notes: list[str] = dataclasses.field(default_factory=list)  # Messages about how the drawing was read.
     layers: dict[str, int] = dataclasses.field(default_factory=dict)  # Number of objects on each layer, chosen or not.
-    # Outlines that came from round posts and something else, which touched, and the number of these posts.
+    # Outlines that a union made of round posts and other outlines, and the number of these posts.
     swallowing: list[tuple[Numbers, int]] = dataclasses.field(default_factory=list)
     page: Box | None = None  # The page of an SVG, outside which nothing is visible.
     outside: int = 0  # Number of outlines, circles and lines outside the region that the user gave.
@@ -190,7 +190,7 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
-    """Evenly spaced points along the edges. The corners alone would not be enough, because the corners of a square lie
+    """Evenly spaced points along the edges. The corners alone are not enough: the corners of a square, for example, are
     on a circle."""
     ends = np.vstack([outline, outline[:1]]) if is_closed else outline
     ways = np.hypot(*np.diff(ends, axis=0).T)
@@ -220,7 +220,7 @@ def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[
 def edges_among(outlines: list[Numbers], holes: list[Numbers],
                 centres: Numbers) -> tuple[Numbers | None, list[Numbers]]:
     """The edge of the device, and the other outlines. The edge is an outline that contains everything else. If a
-    rectangle or a hole within this outline contains all the rest, the rectangle or hole is the edge.
+    rectangle or a hole within this outline also contains all the rest, this rectangle or hole is the edge.
     @param centres  of circles"""
     edge: Numbers | None = None
     while (index := holder_among(outlines, centres)) is not None and (edge is None or walls.is_rectangle(outlines[index])):
@@ -288,7 +288,7 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
 
 
 def holds_centre(region: Box, circle: tuple[float, float, float]) -> bool:
-    """Whether a region holds the centre of a circle. A centre on the upper or the right border is outside, because the
+    """Whether the centre of a circle is in a region. A centre on the upper or the right border is outside, because the
     array repeats there. The centre of a fitted circle is rounded."""
     left, bottom, right, top = region
     near = ROUNDED * max(right - left, top - bottom)
@@ -297,7 +297,7 @@ def holds_centre(region: Box, circle: tuple[float, float, float]) -> bool:
 
 def leave_out_centres_beyond(drawing: Drawing, frame: Box,
                              circles: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
-    """The circles with their centre within the frame of a picture or a region. Notes how many others there are."""
+    """The circles with a centre within the frame of a picture or a region. Notes the number of the other circles."""
     kept = [circle for circle in circles if holds_centre(frame, circle)]
     if number := len(circles) - len(kept):
         drawing.notes.append(left_out(number, "picture" if drawing.is_picture else "region"))
@@ -310,7 +310,7 @@ def left_out(number: int, name: str) -> str:
 
 
 def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
-    """@param outlines  that will not become posts as they are. @throws UserError  if round posts became part of them"""
+    """@param outlines  that will not become posts unchanged. @throws UserError  if a union made them of round posts"""
     number = sum(posts for outline, posts in drawing.swallowing if walls.is_one_of(outline, outlines))
     if number:
         raise UserError(f"{rounded.count_text(number, 'round post')} would vanish, because posts cross a larger "
@@ -320,8 +320,9 @@ def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
 
 
 def lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> list[Numbers]:
-    """The holes that may be meant as posts: round holes that are neither the device's edge nor within a round post, and
-    holes of any form within the edge, or within the only outline, that are within no other outline."""
+    """The holes that may be meant as posts. Round holes are among them if they are neither the device's edge nor within
+    a round post. Holes of any form are among them if they are within the edge (or within the only outline), and within
+    no other outline."""
     posts = [*drawing.circles, *filter(None, (fitted_circle(outline, True, tolerance) for outline in drawing.outlines))]
     places = np.reshape(posts, (-1, 3))
     is_alone = edge is None and len(drawing.outlines) + len(drawing.circles) == 1
@@ -337,7 +338,7 @@ def lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> list
 
 
 def refuse_lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> None:
-    """@throws UserError  if posts may be drawn as holes"""
+    """@throws UserError  if holes in the drawing may be meant as posts"""
     if holes := lost_holes(drawing, edge, tolerance):
         # The borders between several pieces of one area may cut holes, which are then not among these.
         least = "at least " if edge is None and len(drawing.outlines) > 1 else ""
@@ -348,7 +349,7 @@ def refuse_lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) 
 
 
 def refuse_indented(edge: Numbers | None, scale: float, droplet: float) -> None:
-    """Refuses an edge that is no rectangle: the device is the rectangle around its edge, so material within this
+    """Refuses an edge that is no rectangle. The device is the rectangle around its edge, so material within this
     rectangle would be lost.
     @param scale  droplet diameters per unit of the drawing, @param droplet  diameter of the droplet [m]
     @throws UserError"""
@@ -411,7 +412,7 @@ def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
 
 
 def slender(outlines: list[Numbers]) -> list[Numbers]:
-    """The outlines that are at least three times as long as wide, as scale bars and labels are."""
+    """The outlines that are at least three times as long as wide. Scale bars and labels have such outlines."""
 
     def is_slender(outline: Numbers) -> bool:
         near = along_edges(outline, True)
@@ -433,8 +434,8 @@ def valid(polygon: Any) -> Any:
 
 
 def as_circles(device: Device) -> Device:
-    """The device with a circle in place of each outline that is not round. The circle has the same area as the outline.
-    @throws UserError  if an outline crosses itself, because the signs of its parts differ"""
+    """The device with a circle in place of each outline that is not round. The circle and the outline have equal areas.
+    @throws UserError  if an outline crosses itself, because the areas of its parts have different signs"""
     if device.others:
         geometry = library("shapely.geometry", "python3-shapely")
         for outline in device.others:

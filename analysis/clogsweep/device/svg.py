@@ -1,4 +1,4 @@
-"""Reads outlines from SVG drawings as librsvg shows them. The unit of length is a CSS pixel. An inch has 96 of them."""
+"""Reads outlines from SVG drawings as librsvg shows them. The unit of length is a CSS pixel; an inch has 96 pixels."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from .shapes import Drawing
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
-# Number of straight pieces of each curved segment. For a quarter of a circle they deviate by 2e-5 of its radius.
+# Number of straight pieces of each curved segment. For a quarter of a circle, the pieces deviate by 2e-5 of the radius.
 PIECES_OF_CURVE = 64
-# A quarter of an ellipse is drawn as a Bezier curve whose handles have this share of the way to the corner.
+# A quarter of an ellipse is drawn as a Bezier curve. Its handles have this fraction of the distance to the corner.
 QUARTER = 4 / 3 * (np.sqrt(2) - 1)
 NO_AREA = 1e-6  # A path is a line if it encloses at most this fraction of the square of its size.
 PAGE_WITHOUT_SIZE = 1e4  # [px]
@@ -79,7 +79,7 @@ def set_scale(found: Drawing, root: Any) -> None:
 
 
 def empty(root: Any) -> Any:
-    """The drawing without its content. Without a size of its own, it has that of its viewBox."""
+    """The drawing without its content. If the drawing has no size, its size is that of its viewBox."""
     frame = ElementTree.Element(root.tag, {name: root.get(name)
                                            for name in ("width", "height", "viewBox", "preserveAspectRatio")
                                            if root.get(name)})
@@ -247,7 +247,8 @@ def corners_of(svgelements: Any, outline: Any) -> Numbers:
 
 
 def along_curve(handles: Numbers) -> Numbers:
-    """Points along a Bezier curve, without the first; on a quarter of an ellipse if it is drawn as one.
+    """Points along a Bezier curve, without the first point. If the curve represents a quarter of an ellipse, the points
+    are on the ellipse.
     @param handles  the four points of the curve (4, 2)"""
     share = np.linspace(0, 1, PIECES_OF_CURVE + 1)[1:, None]
     start, first, last, end = handles
@@ -272,8 +273,8 @@ def add(found: Drawing, corners: Numbers) -> None:
 
 
 def closed(corners: Numbers) -> Numbers:
-    """A filled outline with its last corner at the first: viewers fill open paths as if they were closed. Lines stay as
-    they are, because they have no area to fill."""
+    """A filled outline with a last corner that equals the first, because viewers fill open paths as if they were
+    closed. Lines stay unchanged, because they have no area to fill."""
     ends = np.vstack([corners, corners[:1]])
     size = float(np.ptp(corners, axis=0).max())
     return corners if is_closed(corners) or abs(walls.area(ends)) <= NO_AREA * size**2 else ends

@@ -8,7 +8,7 @@ import numpy as np
 from ..tools.hints import Numbers
 
 SHARE = 0.9  # An outline at a side is a wall if its length is at least this fraction of the device's length.
-SLENDER = 3  # Smallest length of a wall divided by its thickness. So square posts are no walls.
+SLENDER = 3  # Smallest length of a wall divided by its thickness. With this limit, square posts are no walls.
 FLAT = 0.05  # Largest deviation of a wall's outline from a rectangle [sigma].
 
 

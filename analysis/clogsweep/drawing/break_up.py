@@ -13,13 +13,13 @@ REACH = (1 + DIAMETER) / 2  # the largest offset with contact [sigma]
 
 
 def draw(found: dict[float, Threshold], shared: str) -> Figure:
-    """Draws the thresholds. @param found  thresholds by offset; @param shared  what all droplets have in common, for
-    the caption"""
+    """Draws the thresholds. @param found  thresholds by offset; @param shared  the common parameters of all droplets,
+    for the caption"""
     figure, axes = style.subplots(figsize=(6.4, 4.8))
     known = {offset: math.sqrt(low * high) for offset, (low, high) in sorted(found.items()) if low and high}
     axes.plot(*zip(*known.items()), marker="o", color=style.COLOURS[0])
     axes.set_yscale("log")
-    # Keeps the lower limit that the curve alone gave, because the filled area would change it.
+    # Keeps the lower limit of the curve, because the filled area would change it.
     axes.set_ylim(bottom=axes.get_ylim()[0])
     style.plain_logarithmic(axes.yaxis)
     axes.fill_between(list(known), list(known.values()), 1e-9, color=style.COLOURS[0], alpha=0.13, linewidth=0)

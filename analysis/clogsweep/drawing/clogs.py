@@ -47,7 +47,7 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
 
 
 def tell_left_out(rows: Records) -> None:
-    """Prints how many clogs of_polygons() leaves out, if any."""
+    """Prints how many clogs of_polygons() excludes, if any."""
     if number := int((are_clogged_polygons(rows) & are_passages(rows)).sum()):
         print(f"left out: {rounded.count_text(number, 'clog')} in a channel or on a wall; "
               "clogfit report draws them, after clogsweep select "
@@ -61,7 +61,7 @@ def mechanism_of(row: np.void) -> str:
 
 
 def lacking(path: object, has_unfinished: bool) -> UserError:
-    """The error for a sweep without a clogged polygon in an array.
+    """The error for a sweep that has no clogged polygon in an array.
     @param has_unfinished  whether the sweep can be resumed"""
     resume = "resume it, or " if has_unfinished else ""
     return UserError(f"{path} holds no clogged polygon in an array (soft disks do not count); "
@@ -83,7 +83,7 @@ def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: C
 
 
 def computed_once(rows: list[np.void]) -> list[np.void]:
-    """Each run once, although several laboratories may have it."""
+    """The clogs, with each run only once. Several laboratories may have the same run."""
     names = ("line_tension", "seed", "release_x", "release_y", "distance", "time", "steps")
     return list({tuple(row[name].tobytes() for name in names): row for row in reversed(rows)}.values())[::-1]
 
@@ -153,8 +153,8 @@ class Clogs(Sequence[Clog]):
 def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.void, folder: str) -> Clog:
     """Computes a run again until its droplet rests. @throws ProgramFailed"""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
-    # A run whose clog was certified ended before the droplet reached the equilibrium that is in its row. With --to-rest
-    # the replay continues to the equilibrium.
+    # A run with a certified clog ended before the droplet reached the equilibrium. Its row describes this equilibrium.
+    # With --to-rest the replay continues to the equilibrium.
     replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval",
                    "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:
@@ -203,7 +203,8 @@ def overlaps(clog: Clog) -> Numbers:
 
 def title(row: np.void) -> str:
     """Describes the droplet and its clog in words."""
-    wrapped = f"{row['num_wrapped']} wrapped ({100 * row['wrapped_support']:.0f} % of support)" if row["num_wrapped"] > 0 else "none wrapped"
+    support = f"{100 * row['wrapped_support']:.0f} %"
+    wrapped = f"{row['num_wrapped']} wrapped ({support})" if row["num_wrapped"] > 0 else "none wrapped"
     return (rf"{mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$, task {row['task']}" "\n"
             rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, "
             rf"seed {row['seed']}" "\n"

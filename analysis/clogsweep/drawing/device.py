@@ -28,9 +28,9 @@ OVER = [b"clogged", b"flowing", b"passed", b"broken", b"failed"]
 MOST_PANELS = 6
 # Width of the colour bar, or of the legend without its text, and width of a letter of this text [inches].
 BESIDE, OF_LETTER = 0.9, 0.055
-SITE = 0.25  # Clogs that are nearer to each other are at one place [sigma].
+SITE = 0.25  # Clogs closer together than this are at one place [sigma].
 STEP = 0.1  # Distance between two points of the path of a free droplet [sigma].
-CELL = 0.1  # Side of a cell of the map of passages [sigma].
+CELL = 0.1  # Side of a cell in the map of passages [sigma].
 
 
 @dataclasses.dataclass
@@ -61,7 +61,8 @@ class Place:
                                    unit="mm", **lengths)
 
     def is_same_device(self, other: Place) -> bool:
-        """Whether posts, edges and exit of both devices have the same places. Stored lengths are rounded."""
+        """Whether posts, edges and exit of both devices have the same places, apart from the rounding of stored
+        lengths."""
         return len(self.circles) == len(other.circles) and self.has_walls == other.has_walls and all(
             np.allclose(getattr(self, name), getattr(other, name), rtol=1e-5, atol=1e-5 * self.droplet)
             for name in ("circles", "length", "width", "exit"))
@@ -121,8 +122,8 @@ DEVICE_COLUMNS = ["obstacles", "obstacle_diameter", "box", "boxes", "length", "s
 
 
 def beginnings_of_ways(rows: Records) -> Numbers:
-    """The x at which droplets start. The void nearest to an entrance may be across the border of the array; then this is
-    the x of the periodic image nearest to the entrance."""
+    """The x at which droplets start. The void nearest to an entrance may be across the border of the array. The result
+    is then the x of the periodic image nearest to the entrance."""
     x, entrance = rows["release_x"], rows["entrance"]
     period = np.where(rows["length"] > 0, rows["length"], rows["boxes"] * rows["box"])
     away = x - entrance
@@ -156,8 +157,8 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
 
 
 def pictures(found: Sequence[Place], groups: Groups) -> list[list[Part]]:
-    """The parameter sets of each device. Posts that droplets of several sizes met are one device in millimetres, but
-    several in droplet diameters; they are in one picture."""
+    """The parameter sets of each picture. The same posts, met by droplets of several sizes, are one device in
+    millimetres, but several devices in droplet diameters. They are in one picture."""
     every = [place.parts(groups) for place in found]
     # In the order of clogfit's table
     labels = [panel_label(groups, member) for member in groups.members]
@@ -180,8 +181,7 @@ def the_picture(found: Sequence[Place], groups: Groups, path: AnyPath) -> list[P
 
 
 def chosen(rows: Records, number: int) -> list[np.void]:
-    """Chooses the runs whose paths are shown. The runs that are over are sorted by distance, and evenly spaced ones are
-    taken."""
+    """Chooses the runs with paths that are shown: evenly spaced ones among the ended runs, sorted by distance."""
     over = np.sort(rows[np.isin(rows["status"], OVER) & (rows["status"] != b"failed")], order=["distance", "task"])
     return evenly(list(over), number)
 
@@ -209,8 +209,8 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
 def shown_parts(every: Sequence[Part], sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int,
                 jobs: int) -> tuple[list[Part], int]:
     """The parameter sets that have a panel, with their paths, and the number of all parameter sets. Prints a line if
-    some parameter sets are left out.
-    @param num_lines  number of runs of each panel whose paths are drawn as lines
+    some parameter sets have no panel.
+    @param num_lines  number of runs of each panel with a path that is drawn as a line
     @param num_mapped  number of runs in the map of each panel
     @throws UserError  if no run has ended"""
     if not every:
@@ -234,8 +234,8 @@ def in_one_unit(parts: list[Part]) -> list[Part]:
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
-    """A path in the device. Where the path leaves the device at one side and enters it at the opposite side, it has a
-    gap."""
+    """A path in the device. It has a gap where it leaves the device at one side and enters it again at the opposite
+    side."""
     inside = place.wrapped(points)
     jumps = np.flatnonzero((np.abs(np.diff(inside, axis=0)) > [place.length / 2, place.width / 2]).any(axis=1)) + 1
     return np.insert(inside, jumps, np.nan, axis=0)
@@ -270,7 +270,7 @@ def draw_ends(axes: Axes, place: Place) -> None:
 
 
 def sites(points: Numbers, reach: float) -> list[tuple[Numbers, int]]:
-    """Places, each the mean of points that are near each other, with their numbers of points."""
+    """Mean places of points that are near each other, with the numbers of these points."""
     found = []
     while len(points):
         near = np.hypot(*(points - points[0]).T) < reach
@@ -283,9 +283,9 @@ ROUND_OFF = 1e-6  # of the release of a droplet
 
 
 def came_past(place: Place) -> tuple[Numbers, Numbers]:
-    """Places along the flow, and for each place the fraction of droplets that passed it. As in clogfit, a droplet counts
-    only at places downstream of its release, and not if it was still moving towards them. Without entrance and exit, a
-    place is the first of its periodic images downstream of the release.
+    """Places along the flow, and for each place the fraction of droplets that passed it. As in clogfit, a droplet
+    counts only at places downstream of its release, and not if it was still moving towards them. Without entrance and
+    exit, a place has periodic images; its first image downstream of the release counts.
     @return the places, and the fractions, which are NaN where no droplet counts"""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2
@@ -391,9 +391,9 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
         draw_part(axes, part, 2 if is_grid else 4)
     if maps:
         draw_scale(figure, panels, maps[0], parts)
-    device_plan.draw_flow(panels[-1], 26 if is_grid else 12)
+    device_plan.draw_gravity(panels[-1], 26 if is_grid else 12)
     draw_passages(below, parts)
-    below.set_xlabel(f"{place.coordinate('x')}, along the flow"
+    below.set_xlabel(f"{place.coordinate('x')}, along gravity"
                      + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
     walls = "between walls" if place.has_walls else "periodic across the flow"
     some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""

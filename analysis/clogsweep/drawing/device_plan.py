@@ -1,4 +1,4 @@
-"""Draws a device with its posts, its edges and the direction of the flow, and shows how a drawing was interpreted."""
+"""Draws a device with its posts, its edges and the direction of gravity, and shows how a drawing was interpreted."""
 
 from __future__ import annotations
 
@@ -57,8 +57,8 @@ def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> No
 
 
 def rings_among(circles: Numbers) -> list[Numbers]:
-    """Closed chains of overlapping circles, as centres (n, 2). The space inside such a chain is drawn filled, because
-    no droplet can enter it."""
+    """Closed chains of overlapping circles, as centres (n, 2). The inside of such a chain is drawn filled, because no
+    droplet can enter it."""
     def overlap(i: int, j: int) -> bool:
         return bool(np.hypot(*(circles[i, :2] - circles[j, :2])) < max(circles[i, 2], circles[j, 2]) / 2)
 
@@ -86,12 +86,12 @@ def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[N
     axes.set_ylabel(r"$y/\sigma$")
 
 
-def draw_flow(axes: Axes, points_below: float) -> None:
-    """Draws an arrow along the flow, where there are no posts: below the right end of the axes, at a distance of
+def draw_gravity(axes: Axes, points_below: float) -> None:
+    """Draws an arrow along gravity, where there are no posts: below the right end of the axes, at a distance of
     `points_below` points."""
     place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
     start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
-    axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9,
+    axes.annotate("gravity", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9,
                   annotation_clip=False,
                   arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black", "shrinkB": 0})
 
@@ -113,8 +113,8 @@ def understood(device: Device, source: str) -> Figure:
         draw_posts(axes, device.circles[list(pair)], RED)
     frame(axes, device.length, device.width, "--" if device.has_frame else ":",
           [*device.walls, *(line for _, line in device.lines)])
-    draw_flow(axes, 26)
-    axes.set_xlabel(r"$x/\sigma$, along the flow")
+    draw_gravity(axes, 26)
+    axes.set_xlabel(r"$x/\sigma$, along gravity")
     micrometres = device.droplet_micrometres
     red = f", {len(device.others)} not round (red)" if device.others else ""
     style.caption(axes, rf"{literal(source)}: {rounded.count_text(device.num_posts(), 'post')}{red}, "

@@ -26,7 +26,7 @@ def times_of(groups: Groups) -> list[float]:
     if not 0 < first < last:
         raise UserError(f"cannot draw dwells (they are known from {first:.4g} t0 on, and no run is longer); "
                         "make max-time longer")
-    # clogfit would refuse a first time that is rounded down, so both ends are exact.
+    # clogfit refuses a first time that is rounded down, so both ends must be exact.
     return [first, *np.geomspace(first, last, NUM_TIMES)[1:-1].tolist(), last]
 
 

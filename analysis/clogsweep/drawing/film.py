@@ -31,14 +31,12 @@ Pixels = npt.NDArray[np.uint8]  # height x width x 4, for red, green, blue and a
 
 FORMAT = (9.6, 5.4)  # Inches.
 SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # Pixels per inch.
-# Margin as a fraction of the figure. Without the margin, half of the line around the frame would be outside the
-# picture.
+# Margin as a fraction of the figure. Without it, half of the line around the frame would be outside the picture.
 LINE = 0.002
 HEIGHT = 0.93  # Height of the droplet's surroundings, as a fraction of the figure.
 # Width of the droplet's surroundings as a fraction of the figure, with and without room for a colour bar.
 WIDTHS = {"speed": 0.91, "mechanism": 1 - 2 * LINE}
-# Largest distance that the droplet moves between two frames [sigma]. The eye cannot follow a droplet that moves
-# farther.
+# Largest distance that the droplet moves between two frames [sigma]. The eye cannot follow longer steps.
 LONGEST_STEP = 0.5
 SECONDS_OF_VERDICT = 2
 ENDINGS = (".mp4", ".gif")
@@ -47,9 +45,9 @@ SHADES = 96  # Number of colours of a palette for the first frame, and number of
 
 
 def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64]:
-    """Chooses every n-th frame up to the last one, and at most `most` frames. The first frame is added if the film
-    reaches so far back. If the droplet moved too far in n frames, n is reduced, and the film shows only the end of the
-    run."""
+    """Chooses every n-th frame back from the last one, and at most `most` frames. If the film reaches back to the first
+    frame, that frame is added. If the droplet moved too far in n frames, n is reduced, and the film shows only the end
+    of the run."""
     count = len(run.times)
     way = np.abs(np.diff(trajectory.centroids(run.polygons), axis=0)).sum()
     step = max(1, -(-(count - 1) // max(1, most - 1)))
@@ -77,7 +75,7 @@ class Camera:
         half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / aspect, height))
         self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
-        # The average of local maxima never makes the view too small for the droplet.
+        # An average of local maxima is never too small for the droplet.
         self._half_height = smoothed(ndimage.maximum_filter1d(half_height, 2 * frames_of_a_turn + 1, mode="nearest"),
                                      frames_of_a_turn)
 
@@ -155,8 +153,8 @@ class Film:
         return self._axes.legend(handles=shown, loc="upper right", fontsize=9, edgecolor="0.7", framealpha=1)
 
     def _separate(self, inset: list[Artist], still: list[Artist]) -> None:
-        """Separates the static parts from the moving parts. The scale bar is as long as a droplet is wide. So it
-        changes when the camera zooms."""
+        """Separates the static parts from the moving parts. The scale bar has the width of a droplet, so it changes
+        when the camera zooms."""
         under = [*self._axes.patches[:self._num_walls], self._obstacles, self._trail,
                  self._inside, self._outline, self._frame]
         over = [self._course, self._head, self._clock, self._verdict]
@@ -186,7 +184,7 @@ class Film:
         self._speeds = None
         if colour == "speed":
             self._speeds = trajectory.interface_speeds(self._run) / self._run.row["terminal_speed"]
-            # Speeds above this limit share the brightest colour. Otherwise a few fast moments would leave all other
+            # Speeds above this limit have the brightest colour. Otherwise a few fast moments would make all other
             # moments dark.
             self._outline.set_norm(matplotlib.colors.Normalize(0, max(1e-3, np.percentile(self._speeds, 98))))
             self.figure.colorbar(self._outline, cax=self.figure.add_axes((0.92, 0.2, 0.012, 0.6)),
@@ -234,14 +232,14 @@ class Film:
         """Draws a frame. @return its pixels, valid until the next frame is drawn"""
         self.show(index)
         canvas = self.figure.canvas
-        self._renew_bar()
+        self._redraw_bar()
         canvas.restore_region(self._background)
         renderer = canvas.get_renderer()
         for artist in (*self._moving_under, *self._layers, self._bar_layer, *self._moving_over):
             artist.draw(renderer)
         return pixels_of(self.figure)
 
-    def _renew_bar(self) -> None:
+    def _redraw_bar(self) -> None:
         (left, _), (right, _) = self._axes.transData.transform([(0, 0), (1, 0)])
         if round(right - left) != self._bar_width:
             self._bar_width = round(right - left)
@@ -313,7 +311,7 @@ def write_film(film: Film, path: pathlib.Path, rate: int) -> pathlib.Path:
 def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
     """Writes the film with ffmpeg. @throws UserError  with the reason of ffmpeg"""
     height, width, _ = pixels_of(film.figure).shape
-    # The encoder takes most of the time. `veryfast` reduces its time to two thirds of the default, and makes the file a
+    # The encoder takes most of the time. With `veryfast` it takes two thirds of its default time, and the file is a
     # sixth larger. Players require `yuv420p`.
     command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo",
                "-pix_fmt", "rgba", "-video_size", f"{width}x{height}", "-framerate", str(rate),
@@ -333,8 +331,8 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
 
 
 def palette_of(first: Pixels) -> Image.Image:
-    """One palette for all frames. The palette has the colours of the first frame, shades of the colour bar, greys, and
-    colours that only occur at the end."""
+    """One palette for all frames. It has the colours of the first frame, shades of the colour bar, greys, and colours
+    that occur only at the end."""
     seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
     bar = style.VIRIDIS(np.linspace(0, 1, SHADES))[:, :3]
     greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)

@@ -28,7 +28,7 @@ HOLLOW_MARKERS = {
 
 
 def reasons_for_hollow_marker(group: Group) -> list[str]:
-    """The doubts that make a group's marker hollow. A group without clogs has an arrow instead of a marker, which
+    """The doubts that make a group's marker hollow. A group without clogs has an arrow in place of a marker. The arrow
     already shows that clogs are few."""
     return [doubt for doubt in style.doubts(group)
             if doubt in HOLLOW_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
@@ -36,7 +36,7 @@ def reasons_for_hollow_marker(group: Group) -> list[str]:
 
 SPEED_NOTES = ["bars: standard errors"]
 NOTE_WIDTH = 100  # Number of characters in a line below a picture.
-# clogfit's name for distance divided by time, averaged over all runs whatever their distance.
+# clogfit's name for distance divided by time, averaged over all runs, even over those with a short distance.
 OF_ALL_RUNS = "relative_speed_all"
 THROUGH_BOUNDS = "_through bounds"  # The underscore hides a line from matplotlib's legends.
 FITTED = "_fitted"
@@ -156,7 +156,7 @@ def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
 
 def speed_column(groups: Iterable[Group]) -> str:
     """The column with the mean speed. The mean over the runs that went far enough to have a speed is too high, because
-    these are mostly fast runs. So the speed of all runs is preferred. Files without dwells do not have this column."""
+    most of these runs are fast. So the speed of all runs is preferred. Files without dwells do not have this column."""
     return OF_ALL_RUNS if any(group.get(OF_ALL_RUNS) is not None for group in groups) else "relative_speed"
 
 

@@ -22,7 +22,7 @@ LENGTHS = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 def lengths_of(table: pathlib.Path, groups: Groups, folder: pathlib.Path | None,
                *options: object) -> list[dict[str, Any]]:
     """The groups that clogfit lengths finds in a table of distances. Lengths are in the unit of the picture.
-    @param groups  of the sweep, whose laboratory gives the diameter
+    @param groups  of the sweep; its laboratory gives the diameter
     @throws UserError  if the table is in mm and no diameter is known"""
     answer = json.loads(programs.run_program(programs.programs_in(folder) / "clogfit", "lengths",
                                              table, "--format", "json", "--confidence", groups.confidence, *options))
@@ -54,7 +54,7 @@ def are_alike(one: Any, other: Any) -> bool:
 
 
 def colour_of(group: dict[str, Any], groups: Groups) -> str:
-    """The colour of the curve that has the values of a measured group, or a dark grey if the values choose no curve."""
+    """The colour of the curve that has the values of a measured group, or dark grey if no curve has these values."""
     columns = {fits.DROPLETS[name]["key"] if name in fits.DROPLETS else name: name
                for name in groups.curve_parameters()}
     values = {columns[key]: value for name, value in group.items() if (key := name.replace("-", "_")) in columns}
@@ -64,7 +64,7 @@ def colour_of(group: dict[str, Any], groups: Groups) -> str:
 
 
 def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
-    """Draws a star with an interval for each group with a value of the abscissa, in the colour of the curve that has
+    """Draws a star with an interval for each group that has a value of the abscissa, in the colour of the curve with
     the group's other values. A group without a value of the abscissa becomes a band over the whole range of the
     abscissa. If no droplet of a group clogged, an arrow points up from the lower bound."""
     drawn = False

@@ -37,7 +37,7 @@ class Kind:
 CHANNEL = Kind(
     "Passages", "passed", {"passed": "passed", "clogged": "clogged", "broken": "broken up",
                            "flowing": "flowing at the end"},
-    {"largest_shape_parameter": r"largest shape parameter $\mathcal{A}$",
+    {"largest_shape_parameter": r"largest shape parameter $A$",
      "smallest_relative_speed": r"smallest speed $v_g/v_t$",
      "largest_relative_speed": r"largest speed $v_g/v_t$"},
     {"largest_shape_parameter": "largest A", "largest_shape_parameter_at": "at h/&sigma;",
@@ -58,7 +58,7 @@ def kind_of(groups: Groups) -> Kind:
 
 
 def share(kind: Kind, members: Sequence[Group]) -> str:
-    """The number of a curve's droplets that passed, or came to rest, and the number of all its droplets."""
+    """The number of a curve's droplets that passed or came to rest, and the number of all its droplets."""
     return f"{sum(group['status'] == kind.goal for group in members)} of {len(members)} {kind.outcomes[kind.goal]}"
 
 
@@ -101,7 +101,7 @@ def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]
 
 
 def examples(rows: npt.NDArray[np.void], count: int) -> list[np.void]:
-    """Rows spread evenly over the sweep, including the first and the last."""
+    """Rows that are evenly spread over the sweep. The first and the last row are included."""
     over = [row for row in rows if stored.text(row["status"]) in FINISHED and row["model"] == b"dp"]
     places = {round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))}
     return [over[place] for place in sorted(places)]
@@ -135,7 +135,7 @@ def draw_outline(axes: Axes, groups: Groups, run: Trajectory) -> None:
     surroundings.draw_droplet(axes, run, shown, (low + high) / 2)
     half = (high - low).max() / 2 + 0.3
     surroundings.frame_limits(axes, (-half, -half), (half, half))
-    axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
+    axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along gravity")
     axes.set_ylabel(r"$y/\sigma$")
     names = [*groups.curve_parameters(), groups.abscissa]
     label = ", ".join(

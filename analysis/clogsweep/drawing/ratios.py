@@ -22,8 +22,8 @@ DROPLETS = {column["key"]: column for column in fits.droplet_columns().values()}
 
 
 def abscissa_of(answer: dict[str, Any]) -> str:
-    """The parameter for the abscissa: the number with the most values. If several numbers have equally many values, it
-    is the line tension. The text is empty if nothing varies."""
+    """The parameter for the abscissa: the number with the most values. If several numbers have equally many values, the
+    line tension is preferred. Empty if nothing varies."""
     comparisons = answer["comparisons"]
     numbers = [name for name in answer["columns"] if all(is_number(str(one[name])) for one in comparisons)]
     return max(numbers, key=lambda name: (len({one[name] for one in comparisons}), name == "line_tension"), default="")
@@ -35,8 +35,8 @@ def curves_of(answer: dict[str, Any], abscissa: str) -> list[tuple[str, list[Com
     curves: dict[tuple[Any, ...], list[Comparison]] = {}
     for one in answer["comparisons"]:
         curves.setdefault((one["here"], *(one[name] for name in others)), []).append(one)
-    told_apart = {key[0] for key in curves}
-    labels = [", ".join([*([side(answer, key[0])] if len(told_apart) > 1 or not others else []),
+    distinguished = {key[0] for key in curves}
+    labels = [", ".join([*([side(answer, key[0])] if len(distinguished) > 1 or not others else []),
                          *(value_label(name, value) for name, value in zip(others, key[1:]))])
               for key in curves]
     return list(zip(labels, curves.values()))
@@ -55,7 +55,7 @@ def side(answer: dict[str, Any], name: str) -> str:
 
 
 def flaws_of(one: Comparison) -> Group:
-    """The doubts and failures of both sides, as those of one group."""
+    """The doubts and failures of both sides, combined into those of one group."""
     sides = ("here", "there")
     doubts = dict.fromkeys(word for side in sides for word in (one[f"doubts_{side}"] or "").split())
     return {"doubts": " ".join(doubts), "clogs": min(one[f"clogs_{side}"] for side in sides),

@@ -38,12 +38,12 @@ def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0)
 
 
 def draw_guides(axes: Axes) -> None:
-    """Draws a bar as long as a droplet is wide, and an arrow along the flow. Bar and arrow keep their corners of the
+    """Draws a bar as long as a droplet is wide, and an arrow along gravity. Bar and arrow keep their corners of the
     axes when the view moves."""
     draw_bar(axes)
     arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
                           arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
-    word = axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
+    word = axes.text(0.03, 0.925, "gravity", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
     for artist in (arrow.arrow_patch, word):
         artist.set_path_effects([HALO])
 

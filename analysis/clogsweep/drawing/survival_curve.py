@@ -15,7 +15,7 @@ from ..tools.hints import Group, Numbers
 from ..tools.texts import literal
 from . import lengths
 
-Curve = tuple[str, Group]  # The label of a curve, and a group whose distances are in the unit of the picture.
+Curve = tuple[str, Group]  # The label of a curve, and a group with distances in the unit of the picture.
 
 
 def longest_way(group: Group) -> float:
@@ -71,8 +71,8 @@ def of_table(answer: dict[str, Any]) -> list[Curve]:
 
 
 def of_mixture(answer: dict[str, Any], unit: str) -> Curve | None:
-    """The curve of clogfit --mixture, if the JSON output of clogfit has one. @throws UserError  if its distances are in
-    another unit than those of the groups"""
+    """The curve of clogfit --mixture, if the JSON output of clogfit has one. @throws UserError  if its distances and
+    those of the groups have different units"""
     mixture = answer.get("mixture")
     if mixture is None:
         return None
@@ -85,8 +85,8 @@ def of_mixture(answer: dict[str, Any], unit: str) -> Curve | None:
 
 
 def draw_on(axes: Axes, curves: Sequence[Curve], unit: str, mixture: Curve | None = None) -> None:
-    """Draws P(r) of each group up to its longest distance, and that of a mixture with its intervals. @param unit  of
-    the distances: sigma or mm. @throws UserError  if no droplet has moved"""
+    """Draws P(r) of each group up to the group's longest distance. Also draws P(r) of a mixture, with intervals. @param
+    unit  of the distances: sigma or mm. @throws UserError  if no droplet has moved"""
     if not any(longest_way(group) > 0 for _, group in curves):
         raise UserError("cannot draw P(r) (no droplet has moved)")
     drawn = [*curves, mixture] if mixture else curves
@@ -105,7 +105,7 @@ def draw_on(axes: Axes, curves: Sequence[Curve], unit: str, mixture: Curve | Non
                 axes.fill_between(*zip(*known, end), step="post", color="black", alpha=0.12, linewidth=0)
     axes.set_xlim(left=begin)
     axes.set_ylim(0, 1.02)
-    style.label(axes, r"displacement along the flow $r/\sigma$" if unit == "sigma" else "displacement along the flow $r$ [mm]", "$P(r)$, not yet clogged")
+    style.label(axes, r"displacement along gravity $r/\sigma$" if unit == "sigma" else "displacement along gravity $r$ [mm]", "$P(r)$, not yet clogged")
     if any(label for label, _ in curves):
         style.legend(axes)
     style.notes(axes, ["steps: clogs; ticks: droplets that were last seen moving",

@@ -60,7 +60,7 @@ def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
                       [inside[place] for place in trajectory.along_the_way(run.polygons[inside], num_outlines)])
     surroundings.draw_guides(all_axes[0, 0])
     all_axes[0, 0].set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
-    all_axes[-1, 0].set_xlabel(r"$x/\sigma$, along the flow; the path continues from strip to strip")
+    all_axes[-1, 0].set_xlabel(r"$x/\sigma$, along gravity; the path continues from strip to strip")
     figure.colorbar(time_scale(run), ax=list(all_axes[:, 0]), label=r"$t/t_0$", fraction=0.02, pad=0.01)
     return figure
 
@@ -71,12 +71,12 @@ def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
     surroundings.draw_surroundings(axes, run, origin)
     low, high = view(run)
     surroundings.frame_limits(axes, low - origin, high - origin)
-    axes.set_xlabel(AXES["h"] if is_passage else r"$x/\sigma$, along the flow")
+    axes.set_xlabel(AXES["h"] if is_passage else r"$x/\sigma$, along gravity")
     axes.set_ylabel(r"$y/\sigma$")
     surroundings.draw_guides(axes)
     axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
     draw_outlines(axes, run, trajectory.along_the_way(run.polygons, num_outlines), origin)
-    # The colour bar is as high as the axes, whose shape is fixed. By default it would be as high as the figure.
+    # The colour bar is as high as the axes, which have a fixed shape. By default it would be as high as the figure.
     axes.figure.colorbar(time_scale(run), cax=axes.inset_axes((1.01, 0, 0.02, 1)), label=r"$t/t_0$")
 
 

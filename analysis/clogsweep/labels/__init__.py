@@ -9,8 +9,8 @@ from ..tools.hints import Column, Group
 from ..tools.texts import literal
 
 AXES = {
-    "line_tension": r"line tension $\Gamma = \gamma/(g\rho\sigma^2)$",
-    "wall_stiffness": r"wall stiffness $E_w = \epsilon_w/(g\rho\sigma^3)$",
+    "line_tension": r"line tension $\Gamma$ [$g\rho\sigma^2$]",
+    "wall_stiffness": r"wall stiffness $E_w$ [$g\rho\sigma^3$]",
     "capillary_number": r"capillary number $Ca = (v_g/v_t)\,\pi/(4\Gamma)$",
     "sag": r"sag of the centroid under its own weight $/\sigma$",
     "top_sag": r"sag of the top under its own weight $\delta_s/\sigma$",
@@ -18,7 +18,7 @@ AXES = {
     "speed": r"mean speed $\langle v_g\rangle/v_t$",
     "slope": r"lateral displacement per distance",
     "h": r"position relative to the orifice $h/\sigma$",
-    "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
+    "shape": r"shape parameter $A = P^2/(4\pi a)$",
     "profile": r"speed $v_g/v_t$",
 }
 
@@ -88,6 +88,19 @@ def parameter_label(column: Column, value: float | str | None) -> str:
     if column["name"] == "lattice_angle" and value is not None:
         return f"lattice angle {value:.4g}°"  # The symbol may also be that of the tilt of plates.
     return f"${symbol(column)} = {number(value)}$"
+
+
+def phrase(column: Column, value: float | str | None) -> str:
+    """A parameter and its value in words, for captions, such as: obstacle gap 0.2 sigma."""
+    if "label" in column or value is None or isinstance(value, str):
+        return parameter_label(column, value)
+    if column["name"] == "vertices":
+        return f"{value:g} vertices"
+    if column["unit"] == "degrees":
+        return f"{column['name'].replace('_', ' ')} {value:.4g}°"
+    unit = column["unit"]
+    after = f"/{tex(unit[2:])}" if unit.startswith("1/") else rf"\,{tex(unit)}" if unit else ""
+    return f"{column['name'].replace('near_wall', 'near-wall').replace('_', ' ')} ${number(value)}{after}$"
 
 
 def axis_label(column: Column) -> str:

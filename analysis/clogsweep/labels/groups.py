@@ -11,7 +11,7 @@ from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
-from . import AXES, INTERFACES, axis_label, interface_of, is_number, runs_a_point, parameter_label, symbol
+from . import AXES, INTERFACES, axis_label, interface_of, is_number, parameter_label, phrase, runs_a_point, symbol
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # names by obstacle_filling
@@ -24,7 +24,7 @@ def has_results(group: Group) -> bool:
 
 
 class Groups:
-    """Those groups of one sweep that have runs. The groups are drawn against one parameter of the sweep."""
+    """The groups of one sweep that have runs, drawn against one parameter of the sweep."""
 
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param fit  the JSON output of clogfit; @param circle_files  see stored.circle_files()"""
@@ -193,8 +193,8 @@ class Groups:
         return self._of_models(names)
 
     def _of_models(self, names: Iterable[str]) -> list[str]:
-        """Names of parameters in which groups differ, without those that follow from the model: one model has a single
-        value, and the other lacks them."""
+        """Names of parameters in which groups differ. A parameter that follows from the model (one model has a single
+        value, the other model lacks the parameter) is left out."""
         if not self.varies("model"):
             return list(names)
         return ["model", *(name for name in names if name != "model" and len(self.values(name) - {None}) > 1)]
@@ -271,7 +271,7 @@ class Groups:
         first = self.members[0]
         models = [name for model, name in (("dp", "deformable polygon"), ("sp", "soft disk")) if model in self.values("model")]
         words = [" and ".join(models)]
-        words += [self.parameter_label(name, first[name]) for name in self.columns
+        words += [phrase(self.columns[name], self.named(name, first[name])) for name in self.columns
                   if self._is_worth_a_word(name, first[name])]
         if self.values("obstacle_filling") == {"saturated"}:
             words.append("saturated arrays")

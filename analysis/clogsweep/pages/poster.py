@@ -123,7 +123,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 
 def of_laboratory(groups: Groups) -> str:
-    """A line with the model's units in the laboratory, or an empty text without a laboratory."""
+    """A line that states sigma in mm, and v_t in mm/s if it is known; empty if the sweep has no laboratory."""
     lab = groups.laboratory
     if not lab:
         return ""

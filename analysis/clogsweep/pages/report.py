@@ -47,14 +47,14 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
                             begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
-    style.label(axes, r"displacement along the flow $r/\sigma$", "$P(r)$, not yet clogged")
+    style.label(axes, r"displacement along gravity $r/\sigma$", "$P(r)$, not yet clogged")
     mark_steps(axes)
     style.caption(axes, label or groups.caption())
     style.notes(axes, ["steps: clogs; ticks: censored runs; dashed: exponential of the same length"])
 
 
 def mark_steps(axes: Axes) -> None:
-    """Draws the legend of curves of which each belongs to one group."""
+    """Draws one legend for several curves, each of which belongs to one group."""
     handles, _ = axes.get_legend_handles_labels()
     style.mark_legend(axes.legend(frameon=False, fontsize=8, ncols=1 + len(handles) // 8), handles)
 
@@ -95,12 +95,12 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
 
 
 def with_runs(members: Sequence[Group]) -> list[Group]:
-    """Leaves out groups in which no droplet met an obstacle."""
+    """The groups in which at least one droplet met an obstacle."""
     return [group for group in members if group["runs"]]
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """Draws for each group of one curve the fractions of its runs that ended in each way. @param members  see
+    """Draws, for each group of a curve, which fraction of its runs each cause ended. @param members  see
     with_runs()"""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
@@ -277,7 +277,7 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     """Chooses clogs to show: a typical one of every mechanism, and others, spread evenly from the least to the most
     deformed.
 
-    Clogs of droplets that travelled a diameter or more come first. Clogs at the release depend on the void there, not
+    Clogs of droplets that travelled at least a diameter come first. Other clogs depend on the void of the release, not
     on the array.
 
     @param clogs_of_sweep  rows from clogs.of_polygons()
@@ -291,7 +291,7 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     for row in ordered:
         kinds.setdefault(row["mechanism"], []).append(row)
     typical = [kind[len(kind) // 2] for kind in kinds.values()]
-    # The most and the least deformed clogs are left out, because they often come from the runs with the least reliable
+    # The most and the least deformed clogs are excluded, because they often come from the runs with the least reliable
     # numerics.
     spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
     return list({row["task"]: row for row in typical + spread + ordered}.values())[:count]
@@ -316,7 +316,7 @@ def progress_of(status: dict[str, Any]) -> str:
     return f"{status['finished']} of {rounded.count_text(status['runs'], 'run')} finished ({counts})"
 
 
-LENGTHS = ("&lambda; is the distance that a fraction 1/e of the droplets travels without clogging, "
+LENGTHS = ("&lambda; is the mean distance that droplets travel before they clog, "
            "in droplet diameters; v<sub>t</sub> is the speed of a free droplet. "
            "Each point of a curve has a row of the table.")
 
@@ -332,7 +332,7 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
-MAPPED = 4  # number of runs whose paths make up the map of each panel of a device
+MAPPED = 4  # number of runs that the map of each panel of a device includes
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:

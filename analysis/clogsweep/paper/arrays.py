@@ -246,7 +246,7 @@ def example(runner: Runner, mechanism: str) -> tuple[trajectory.Trajectory, pand
 
 def clog_title(run: trajectory.Trajectory, row: pandas.Series) -> str:
     return (rf"{trajectory.end_of(run)}: "
-            rf"$\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, "
+            rf"$\Gamma = {row.line_tension:g}$, obstacle gap ${row.obstacle_gap:g}\,\sigma$, "
             rf"$\mu = {row.friction:g}$, seed {row.seed}, after $r = {row.distance:.2f}\sigma$")
 
 
@@ -330,7 +330,7 @@ def kinetic_energy(runner: Runner) -> Plate:
     data = []
     for index, (gap, run) in enumerate(energies(runner).items()):
         energy = np.where(run.table["kinetic_energy_ratio"] > 0, run.table["kinetic_energy_ratio"], math.nan)
-        label = rf"$w_\mathrm{{ob}} = {gap}\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
+        label = rf"obstacle gap ${gap}\,\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
         axes.plot(run.table["time"], energy, color=style.COLOURS[index], linewidth=0.9, label=label)
         data += [{"obstacle_gap": gap, "time": t, "kinetic_energy_ratio": e}
                  for t, e in zip(run.table["time"], run.table["kinetic_energy_ratio"])]
@@ -342,9 +342,9 @@ def kinetic_energy(runner: Runner) -> Plate:
     style.label(axes, r"time $t/t_0$", r"kinetic energy / kinetic energy at terminal speed $E_k/E_t$")
     axes.legend(frameon=False)
     row = run.row
-    style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, "
-                        rf"saturated arrays, $V_t = {row['terminal_speed']:g}$, "
-                  rf"$N_v = {row['vertices']}$, seed {row['seed']}, {interface_of(run.word('preset'))}")
+    style.caption(axes, rf"$\Gamma = 0.5$, obstacle diameter ${row['obstacle_diameter']:g}\,\sigma$, "
+                        rf"saturated arrays, terminal speed ${row['terminal_speed']:g}$, "
+                  rf"{row['vertices']} vertices, seed {row['seed']}, {interface_of(run.word('preset'))}")
     return Plate(drawing, data)
 
 
@@ -382,7 +382,7 @@ def survival(runner: Runner) -> Plate:
     style.logarithmic_ordinate(axes)
     axes.set_ylim(lowest_shown(group, end), 1.3)
     axes.set_xlim(0, 1.02 * end)
-    style.label(axes, r"displacement along the flow $r/\sigma$", r"probability of not having clogged $P(r)$")
+    style.label(axes, r"displacement along gravity $r/\sigma$", r"probability of not having clogged $P(r)$")
     axes.legend(frameon=False)
     style.caption(axes, f"{describe(runner.columns('survival'), [group])}\nWeibull's exponent "
                         f"{group['weibull_shape']:.2f}, 1 if exponential (p = {group['weibull_p_value']:.2f})")
@@ -427,10 +427,10 @@ def displacement(runner: Runner) -> Plate:
     t = np.array([0, axes.get_xlim()[1]])
     fastest, = axes.plot(t, row["terminal_speed"] * t, ":", color="0.5", linewidth=1, label="terminal speed $v_t$")
     axes.set_xlim(0, t[1]), axes.set_ylim(bottom=0)
-    style.label(axes, r"time $t/t_0$", r"displacement along the flow $r/\sigma$")
+    style.label(axes, r"time $t/t_0$", r"displacement along gravity $r/\sigma$")
     axes.legend(handles=[fastest, *sorted(ends, key=ends.__getitem__, reverse=True)], frameon=False)
-    style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, "
-                        rf"$\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
-                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}, "
+    style.caption(axes, rf"obstacle gap ${row['obstacle_gap']:g}\,\sigma$, "
+                        rf"obstacle diameter ${row['obstacle_diameter']:g}\,\sigma$, saturated array, "
+                  rf"terminal speed ${row['terminal_speed']:g}$, {row['vertices']} vertices, seed {row['seed']}, "
                   rf"{interface_of(run.word('preset'))}")
     return Plate(drawing, data)

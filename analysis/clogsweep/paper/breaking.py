@@ -47,9 +47,9 @@ def break_up_by_symmetry(runner: Runner) -> Plate:
     style.logarithmic_abscissa(axes)
     style.logarithmic_ordinate(axes)
     style.label(axes, "symmetry of the collision $S$, smaller over larger area",
-                r"largest line tension $\Gamma$ at break-up")
+                r"largest line tension $\Gamma$ [$g\rho\sigma^2$] at break-up")
     axes.legend(frameon=False, fontsize=8)
     keys = collisions.keys
-    style.caption(axes, rf"post of ${collision.DIAMETER}\sigma$, $V_t = {keys['terminal-speed']}$, "
-                  rf"$N_v = {keys['vertices']}$, necks below ${keys['break-up-neck']}\sigma$ break")
+    style.caption(axes, rf"post of ${collision.DIAMETER}\sigma$, terminal speed ${keys['terminal-speed']}$, "
+                  rf"{keys['vertices']} vertices, necks below ${keys['break-up-neck']}\sigma$ break")
     return Plate(drawing, data)

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Sequence
 
-from ..labels import interface_of, runs_a_point, parameter_label
+from ..labels import interface_of, phrase, runs_a_point
 from ..tools.hints import Column, Group
 
 # A caption names these parameters if all points share one value other than 0.
@@ -15,8 +15,8 @@ def arrays_of(groups: Sequence[Group]) -> str:
         return "saturated arrays"
     densities = sorted({group["obstacle_density"] for group in groups})
     if len(densities) == 1:
-        return rf"$\rho_\mathrm{{ob}}\sigma^2 = {densities[0]:g}$"
-    return rf"$\rho_\mathrm{{ob}}\sigma^2 = {densities[0]:.3g}$ to ${densities[-1]:.3g}$"
+        return rf"obstacle density ${densities[0]:g}/\sigma^2$"
+    return rf"obstacle density {densities[0]:.3g} to ${densities[-1]:.3g}/\sigma^2$"
 
 
 def describe(columns: dict[str, Column], groups: Sequence[Group], without: Collection[str] = ()) -> str:
@@ -33,11 +33,11 @@ def describe(columns: dict[str, Column], groups: Sequence[Group], without: Colle
     if polygons and "vertices" not in without:
         meshes = sorted({group["vertices"] for group in polygons})
         words.append(f"{' or '.join(map(str, meshes))} vertices")
-    words += [parameter_label(columns[name], groups[0][name]) for name in NAMED if common(name) and groups[0][name]]
+    words += [phrase(columns[name], groups[0][name]) for name in NAMED if common(name) and groups[0][name]]
     if "obstacle_density" not in without:
         words.append(arrays_of(groups))
     if common("terminal_speed"):
-        words.append(f"$V_t = {groups[0]['terminal_speed']:g}$")
+        words.append(phrase(columns["terminal_speed"], groups[0]["terminal_speed"]))
     words.append(rf"up to ${max(group['max_time'] for group in groups):g}\,t_0$")
     if common("box"):
         words.append(rf"arrays ${groups[0]['box']:g}\,\sigma$ wide")

@@ -37,8 +37,9 @@ def profiles(runner: Runner, name: str, outlines: bool = False, **keys: object) 
 
 def parameters(run: Trajectory, orifice: float) -> str:
     row = run.row
-    return (rf"$w = {orifice}\sigma$, $\Gamma = {row['line_tension']:g}$, $b_0/b_\infty = {row['near_wall_drag']:g}$, "
-            rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, {interface_of(run.word('preset'))}")
+    return (rf"orifice ${orifice}\,\sigma$, $\Gamma = {row['line_tension']:g}$, "
+            rf"$b_0/b_\infty = {row['near_wall_drag']:g}$, terminal speed ${row['terminal_speed']:g}$, "
+            f"{row['vertices']} vertices, {interface_of(run.word('preset'))}")
 
 
 def ending(run: Trajectory) -> str:
@@ -113,7 +114,7 @@ def geometry(runner: Runner) -> Plate:
     left.annotate("", (0.0, 0.2), (0.0, -0.2), arrowprops={"arrowstyle": "<->"})
     left.text(0.06, 0, "$w$", va="center")
     left.annotate("", (1.2, 0), (0.75, 0), arrowprops={"arrowstyle": "-|>", "color": "black"})
-    left.text(0.97, 0.06, "flow", ha="center")
+    left.text(0.97, 0.06, "gravity", ha="center")
     surroundings.frame_limits(left, (-1.3, -1.3), (1.3, 1.3))
     style.caption(left, f"(a) {parameters(channel, 0.4)}".replace(", $b_0", ",\n$b_0"))
     start = array.polygons[0].mean(axis=1)
@@ -125,11 +126,11 @@ def geometry(runner: Runner) -> Plate:
     half = max(2.4, (centres[:, 1].max() - centres[:, 1].min()) / 2 + 1.5)
     surroundings.frame_limits(right, (-1, middle_y - half), (centres[-1, 0] + 1, middle_y + half))
     row = array.row
-    style.caption(right, rf"(b) $w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, "
-                         rf"$\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, "
+    style.caption(right, rf"(b) obstacle gap ${row['obstacle_gap']:g}\,\sigma$, "
+                         rf"obstacle diameter ${row['obstacle_diameter']:g}\,\sigma$, "
                   rf"$\Gamma = {row['line_tension']:g}$, {interface_of(array.word('preset'))}" "\n" rf"circles: centre, every {np.diff(array.times[:2])[0]:.3g} $t_0$; seed {row['seed']}")
     for axes in (left, right):
-        axes.set_xlabel(r"$x/\sigma$, along the flow")
+        axes.set_xlabel(r"$x/\sigma$, along gravity")
         axes.set_ylabel(r"$y/\sigma$")
     data = [{"panel": "b", "time": t, "x": c[0], "y": c[1]} for t, c in zip(array.times, centres)]
     return Plate(drawing, data)
@@ -158,7 +159,7 @@ def squeezing(runner: Runner) -> Plate:
         if runner.profiles:
             axes.legend(frameon=False)
     ripples = "" if run.row["vertices"] >= SMOOTH else f"; ripples of the speed: one for each vertex that passes the tips, none with {SMOOTH}"
-    drawing.suptitle(f"{parameters(run, 0.4)}\nflow to the right, walls grey{ripples}", fontsize=9, color="0.25")
+    drawing.suptitle(f"{parameters(run, 0.4)}\ngravity to the right, walls grey{ripples}", fontsize=9, color="0.25")
     return Plate(drawing, profile_rows(run, "w=0.4"))
 
 
@@ -193,7 +194,7 @@ def two_orifices(runner: Runner) -> Plate:
         surroundings.draw_droplet(inset, run, frame, run.middle)
         surroundings.frame_limits(inset, (-0.8, -0.8), (0.8, 0.8))
         inset.set_xticks([]), inset.set_yticks([])
-        inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
+        inset.set_xlabel(rf"$A_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
         data += [*profile_rows(run, f"w={orifice}"), extremes(run, f"w={orifice}")]
     for pair, path in zip(panels, runner.profiles):
         for axes, column in zip(pair, "Av"):
@@ -230,9 +231,9 @@ def overshoot(runner: Runner) -> Plate:
             draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
-        style.caption(axes, rf"{origin}: $w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$" "\n"
-                      rf"$V_t = {', '.join(f'{terminal_speed(tilt):g}' for tilt in TILTS.values())}$, "
-                      rf"$N_v = {run.row['vertices']}$, {interface_of(run.word('preset'))}")
+        style.caption(axes, rf"{origin}: orifice ${orifice}\,\sigma$, $b_0/b_\infty = {drag:g}$" "\n"
+                      rf"terminal speed ${', '.join(f'{terminal_speed(tilt):g}' for tilt in TILTS.values())}$, "
+                      rf"{run.row['vertices']} vertices, {interface_of(run.word('preset'))}")
     draw_measured(runner.profiles, panels[0], "v")
     for axes in panels:
         axes.legend(frameon=False, fontsize=8, loc="lower right")
@@ -279,7 +280,7 @@ def near_wall_drag(runner: Runner) -> Plate:
     axes.set_yscale("log")
     style.label(axes, r"distance between wall and droplet $d/\sigma$", r"$v_g/(v_t - v_g)$")
     axes.legend(frameon=False)
-    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {row['vertices']}$, "
+    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, terminal speed $0.03$, {row['vertices']} vertices, "
                         r"one run per point" "\n"
                   "drag of a droplet grows less steeply than that of its vertices: "
                   "near a wall only the nearest ones feel it")
@@ -304,7 +305,7 @@ def vertices(runner: Runner) -> Plate:
     for index, (count, run) in enumerate(meshes(runner).items()):
         for panel in (axes, inset):
             draw_profile(panel, run, "speed_ratio", index,
-                         rf"$N_v = {count}$, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$"
+                         rf"{count} vertices, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$"
                          + ending(run))
         data += [*profile_rows(run, f"N_v={count}"), extremes(run, f"N_v={count}")]
     finish(axes, "profile")
@@ -312,8 +313,8 @@ def vertices(runner: Runner) -> Plate:
     inset.set_ylim(0, 0.5)
     inset.tick_params(labelsize=7)
     axes.legend(frameon=False, fontsize=8, loc="lower left")
-    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, "
-                        rf"$V_t = 0.032$, {interface_of(run.word('preset'))}"
+    style.caption(axes, rf"orifice $0.7\,\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, "
+                        rf"terminal speed $0.032$, {interface_of(run.word('preset'))}"
                   "\ninset: near the first minimum")
     return Plate(drawing, data)
 
@@ -328,7 +329,7 @@ def spring_deviations(runner: Runner, preset: str) -> tuple[Trajectory, dict[flo
                     terminal_speed=0.028, preset=preset, perimeter_spring="rest", perimeter_stiffness_ratio=SPRINGS)
     files = []
     for ratio, run in zip(SPRINGS, runs):
-        # The compared passages are longer than the reference, so that each of its frames lies within them.
+        # The reference is cut to a shorter passage, so that all its frames lie within the compared passages.
         frames = run.table[np.abs(run.table["h"]) < (1.2 if run is runs[0] and not runner.profiles else np.inf)]
         files.append(runner.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
                                   zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))

@@ -8,14 +8,14 @@ from .. import style
 from ..reading import programs
 from ..tools import outputs
 from ..tools.texts import printable
-from . import arrays, breaking, channels, density, dilute, hanging  # noqa: F401, these modules fill the catalogue
+from . import arrays, breaking, channels, density, dilute, hanging, sizes  # noqa: F401, they fill the catalogue
 from .plate import CATALOGUE, Entry, Plate
 from .runner import Runner
 
 ORDER = [
     "1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-filling", "6c-saturated", "7a",
     "7a-saturated", "7b", "7c", "7c-saturated", "map", "density",
-    "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2", "W3", "S"]
+    "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2", "W3", "S", "sizes"]
 
 
 def print_list() -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import gzip
 import json
+import math
 import pathlib
 import re
 from collections.abc import Iterable
@@ -24,9 +25,12 @@ if TYPE_CHECKING:
     import pandas
 
 FOLDER = programs.JOBS.parent / "docs" / "gallery" / "rows"
+# Files from before daughters lack these columns. Disks do not break up, and have no values.
+BREAKING = ["break_up_neck", "speed_exponent"]
 # The parameters that differ between the runs of at least one sweep of jobs/figures.
 PARAMETERS = ["model", "preset", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter",
-              "obstacle_density", "obstacle_filling", "friction", "near_wall_drag", "vertices", "inertia"]
+              "obstacle_density", "obstacle_filling", "friction", "near_wall_drag", "vertices", "inertia",
+              *BREAKING]
 # What a length, a speed, or a doubt about them follows from.
 RESULTS = ["status", "distance", "sound_distance", "time", "steady_distance", "steady_time", "mechanism", "stability",
            "failed_by", "wrapped_support", "mesh_hold", "friction_use", "shape_parameter", "longest_dwell",
@@ -92,6 +96,11 @@ def read(name: str, folder: pathlib.Path = FOLDER) -> Finished:
                                na_values={column: [""] for column in [*PARAMETERS, *RESULTS] if column not in WORDS})
     except (OSError, EOFError, ValueError) as error:
         raise UserError(f"cannot read the rows of {name} in {folder} ({error}); check them out again") from error
+    for name in BREAKING:
+        if name not in rows:
+            rows[name] = (rows["model"] == "sp").map({True: math.nan, False: 0.0})
+        for group in answer["groups"]:
+            group.setdefault(name, None if group["model"] == "sp" else 0.0)
     rows.insert(0, "task", range(len(rows)))
     return Finished(answer, rows)
 

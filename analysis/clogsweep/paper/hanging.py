@@ -29,7 +29,7 @@ def by_mesh(runner: Runner, config: str, kinds: Sequence[tuple[str, Sequence[Gro
     @param kinds  for each panel, words that distinguish it, and its groups
     @param config, without  see panels.draw()"""
     meshes = sorted({group["vertices"] for _, groups in kinds for group in groups})
-    found: list[panels.Panel] = [(title, [(curve, meshes.index(vertices), f"$N_v = {vertices}$", {})
+    found: list[panels.Panel] = [(title, [(curve, meshes.index(vertices), f"{vertices} vertices", {})
                                           for vertices, curve in by(groups, "vertices")]) for title, groups in kinds]
     data = [row for title, groups in kinds
             for row in numbers(groups, title.replace("\n", ", "), **of_each(groups, "vertices", "friction", *HOLDS))]
@@ -118,7 +118,7 @@ def tensions_over_a_post(runner: Runner) -> Plate:
     style.grid(right)
     style.legend(right, title="interface, friction on")
     row = held.row
-    drawing.suptitle(rf"$\Gamma = {row['line_tension']:g}$, $\mu = {row['friction']:g}$, $N_v = {row['vertices']}$, "
+    drawing.suptitle(rf"$\Gamma = {row['line_tension']:g}$, $\mu = {row['friction']:g}$, {row['vertices']} vertices, "
                      rf"{interface_of(held.word('preset'))}; "
                      "the lower interface touches the post; left: friction on both", fontsize=9, color="0.25")
     return Plate(drawing, data)

@@ -16,7 +16,7 @@ MOVES = 0.01  # A droplet that is faster than this moves [v_t].
 
 
 def rise_of_an_end(run: Trajectory, post: Point) -> float:
-    """How far the lower end of one of the two lobes of a droplet that hangs over a post rises until the droplet has
+    """A droplet hangs over a post with two lobes. Returns how far the lower end of one lobe rises until the droplet has
     left the post [sigma]."""
     x, y = post
     ends: dict[bool, list[float]] = {True: [], False: []}  # by the side of the post

@@ -101,8 +101,8 @@ class Runner:
         return CONFIGS / f"{name}.{self.size}.cfg"
 
     def _points(self, name: str) -> list[str]:
-        """The arguments for the points file beside a config, whose parameter sets have different meshes. If --set
-        overrides one of its keys, all values of the others are combined, and a line says so."""
+        """The arguments for the points file beside a config. The points have different meshes. If --set overrides one
+        of the file's keys, all values of its other keys are combined, and a line says so."""
         file = self.config(name).with_suffix(".csv")
         if not file.exists():
             return []
@@ -230,8 +230,8 @@ class Runner:
         return stored.read_table(self.sweep_file(name), self.programs)
 
     def record(self, name: str, mechanism: str, row: pandas.Series) -> tuple[str, np.void]:
-        """One run of a sweep as its file has it, and the name of this file. A run of a finished sweep, whose file is
-        not there, is repeated. @param row  of rows()"""
+        """One run of a sweep as its file has it, and the name of this file. If the rows come from a finished sweep
+        without its file, the run is repeated. @param row  of rows()"""
         if not self.rows_folder:
             rows = stored.read_rows(self.sweep_file(name), self.programs)
             return name, next(one for one in rows if one["task"] == row.task)

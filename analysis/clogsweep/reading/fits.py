@@ -17,8 +17,8 @@ def run_clogfit(clogfit: pathlib.Path, *words: object) -> dict[str, Any]:
 
 
 def as_file(word: object) -> object:
-    """A path in a form that no program takes for one of its commands, such as clogfit curve. Paths of Python drop the
-    ./ of ./curve."""
+    """A path in a form that no program mistakes for one of its commands, such as clogfit curve. Paths of Python lose
+    the ./ of ./curve."""
     return f"./{word}" if isinstance(word, pathlib.PurePath) and len(word.parts) == 1 and not word.suffix else word
 
 
@@ -27,7 +27,7 @@ PLACES = {"channel": "channels", "wall": "a flat wall"}  # where droplets have n
 
 def refuse_mixed(fillings: Iterable[str], message: str) -> None:
     """@param fillings  values of obstacle_filling; @param message  with {} for the kinds of places
-    @throws UserError  if the results are of different kinds: those of arrays, channels and walls"""
+    @throws UserError  if the results are of different kinds: from arrays, channels and walls"""
     kinds: dict[str, list[str]] = {}
     for filling in sorted(fillings, key=lambda filling: (filling in PLACES, filling)):
         kinds.setdefault(PLACES.get(filling, "arrays"), []).append(filling)
@@ -50,10 +50,10 @@ def follows(groups: Collection[Group], name: str, others: Iterable[str]) -> bool
 
 def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
     """Converts a fit of several droplets in a laboratory. The diameter and the tilt become parameters, and lengths are
-    converted to mm. In droplet diameters the same array would have other lengths for each droplet. Lattices
-    have the angle that was asked for, because the possible angles differ between the droplets. "in_table" of a group
-    contains its values as they are in the sweep's table, and "following" names the parameters whose values follow from
-    the droplet. Any other fit stays unchanged."""
+    converted to mm: in droplet diameters, the same array has other lengths for each droplet. Lattices have the
+    requested angle, because the possible angles differ between the droplets. "in_table" of a group contains its values
+    as in the sweep's table, and "following" names the parameters with values that follow from the droplet. Any other
+    fit stays unchanged."""
     groups = fit["groups"]
     if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
         return fit
@@ -78,7 +78,8 @@ def droplet_columns() -> dict[str, Column]:
 
 
 def fitted(clogfit: pathlib.Path, sweep: AnyPath, *options: object) -> tuple[dict[str, Any], dict[str, str]]:
-    """The present answer of clogfit, and stored.circle_files(). @throws ProgramFailed  with clogfit's reason"""
+    """The answer of clogfit for the present file, and stored.circle_files(). @throws ProgramFailed  with clogfit's
+    reason"""
     fit = run_clogfit(clogfit, sweep, *options)
     with stored.opened(sweep, folder=clogfit.parent) as file:
         return fit, stored.circle_files(file)

@@ -52,7 +52,7 @@ def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
-    """Adds --programs, whose value is for programs_in()."""
+    """Adds --programs; its value is the folder for programs_in()."""
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of clogsweep, clogrun and clogfit (CLOG_BIN, that of the PATH, or beside this package)")
 
@@ -76,8 +76,8 @@ def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
 
 
 def word_of(argument: object) -> str:
-    """An argument as a word of a command line. Paths of Python drop the ./ of ./-dash.h5, which would be taken for an option
-    without it."""
+    """An argument as a word of a command line. Paths of Python lose the ./ of ./-dash.h5, and the rest would look like
+    an option."""
     word = str(argument)
     return f"./{word}" if isinstance(argument, pathlib.PurePath) and word.startswith("-") else word
 
@@ -86,7 +86,7 @@ def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1
     command = [str(program), *map(word_of, arguments)]
     environment = dict(os.environ)
     if ranks == 1:
-        # clogsweep would refuse to run on one rank if it saw this variable of an allocation.
+        # If this variable of an allocation is set, clogsweep refuses to run on one rank.
         environment.pop("SLURM_NTASKS", None)
     else:
         settings = shlex.quote(str(JOBS / "mpi-settings.sh"))

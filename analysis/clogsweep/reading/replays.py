@@ -1,5 +1,5 @@
-"""Replays rows of a sweep with clogrun, for quantities that the rows do not contain: outlines, and h, v and A along the
-path."""
+"""Replays rows of a sweep with clogrun, for quantities that the rows do not contain: outlines, and the position h, the
+speed v and the shape parameter A along the path."""
 
 import concurrent.futures
 import pathlib

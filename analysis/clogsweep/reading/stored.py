@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) bytes\n")
 SEAL_SIZE = 64
-READABLE_VERSIONS = ("9", "10", "11")
+READABLE_VERSIONS = ("9", "10", "11", "12")
 SWEEP, RUN = "sweep", "run"
 KINDS = {"clogsweep sweep": SWEEP, "clogsweep trajectory": RUN}  # kind of a file by its attribute `kind`
 WRITERS: dict[str | None, str] = {
@@ -47,8 +47,8 @@ def is_sealed(path: AnyPath) -> bool:
 
 
 def text(value: object) -> str:
-    """A word of a table, or lines of an attribute, with escapes for unprintable bytes, because a file from elsewhere
-    may contain any bytes."""
+    """A word of a table, or lines of an attribute. Unprintable bytes are escaped, because a file from elsewhere may
+    contain any bytes."""
     return printable(value.decode(errors="surrogateescape") if isinstance(value, bytes) else value, "\n\t")
 
 
@@ -103,7 +103,7 @@ def changed_run(path: AnyPath) -> UserError:
 
 
 def is_distance_table(path: AnyPath) -> bool:
-    """Whether this is the name of a text table, not of a sweep's file, as clogfit decides it."""
+    """Whether this is the name of a text table rather than of a sweep's file. The rule is that of clogfit."""
     return os.fspath(path).lower().endswith((".csv", ".tsv", ".txt", ".dat"))
 
 
@@ -250,13 +250,20 @@ def read_table(path: AnyPath, folder: AnyPath | None = None) -> pandas.DataFrame
         return table_of(file)
 
 
-def table_of(file: h5py.File) -> pandas.DataFrame:
-    """The table of runs in an open file, for pandas."""
+def table_of(file: h5py.File, name: str = "runs") -> pandas.DataFrame:
+    """The table of runs in an open file, for pandas. @param name  of another table"""
     import pandas  # pandas is slow to load, and not always needed.
 
-    rows = file["runs"][:]
-    meanings = {name: text(file["runs"].attrs.get(name, "")) for name in rows.dtype.names}
-    table = pandas.DataFrame({name: [text(value) for value in rows[name]] if rows.dtype[name].kind == "S" else rows[name]
-                              for name in rows.dtype.names})
-    table.attrs = {"units": {name: unit(meaning) for name, meaning in meanings.items()}, "meanings": meanings}
+    rows = file[name][:]
+    meanings = {column: text(file[name].attrs.get(column, "")) for column in rows.dtype.names}
+    table = pandas.DataFrame({column: [text(value) for value in rows[column]] if rows.dtype[column].kind == "S"
+                              else rows[column] for column in rows.dtype.names})
+    table.attrs = {"units": {column: unit(meaning) for column, meaning in meanings.items()}, "meanings": meanings}
     return table
+
+
+def droplets(file: h5py.File) -> pandas.DataFrame:
+    """The table of droplets, with one row for each member of a family; empty without break-up=daughters."""
+    import pandas
+
+    return table_of(file, "droplets") if "droplets" in file else pandas.DataFrame({"task": [], "path": []})

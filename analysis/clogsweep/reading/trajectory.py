@@ -136,7 +136,7 @@ def verdict(trajectory: Trajectory) -> str:
 
 def centroids(polygons: Numbers) -> Numbers:
     """The centroid of each enclosed area. @param polygons  frames x 2 x N. @return frames x 2"""
-    reference = polygons[:, :, :1]  # A reference near the polygon, so that no digits are lost far from the origin.
+    reference = polygons[:, :, :1]  # A reference near the polygon. With it, no digits are lost far from the origin.
     x, y = np.moveaxis(polygons - reference, 1, 0)
     next_x, next_y = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
     cross = x * next_y - next_x * y

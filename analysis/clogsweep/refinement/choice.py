@@ -1,4 +1,5 @@
-"""Lists the values that a search may try, and chooses those whose runs give the most information for their work."""
+"""Lists the values that a search may try, and chooses those that give the most information for the work of their
+runs."""
 
 import math
 from collections.abc import Sequence
@@ -9,9 +10,9 @@ import pandas
 from ..curves.model import Curve
 from ..tools.hints import Numbers
 
-# Preferred numbers per decade (IEC 60063). Each coarser series is a part of the finer ones.
+# Preferred numbers per decade (IEC 60063). The numbers of each coarser series are a part of those of the finer series.
 SERIES = (192, 96, 48, 24, 12, 6)
-# Square of a distance divided by the range. Points that are nearer to each other than this count as equally near.
+# Squared distance divided by the range. Points that are nearer to each other than this count as equally near.
 NEARNESS = 1e-3
 
 
@@ -57,8 +58,8 @@ def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_l
 
 def choose_blocks(curve: Curve, clogs: Numbers, work: Numbers, weights: Numbers, most_blocks: Numbers,
                   work_of_round: float, most_work: float) -> Numbers:
-    """The number of blocks of seeds for each place. The block that reduces the weighted variance most for its work is
-    added, again and again, until the work of the round is used up.
+    """The number of blocks of seeds for each place. Blocks are added one by one until the work of the round is used up.
+    Each time, the block is chosen that reduces the weighted variance most for its work.
 
     Each added block reduces the variances as if its expected clogs had been observed (a rank-one update). The means do
     not change.

@@ -17,15 +17,15 @@ from .membership import Membership, Values
 KEY = "lattice-angle"
 FOLLOWING = ("lattice_angle", "length", "box")  # The angle, and parameters that follow from it.
 DECIMALS = 6  # Decimals to which an angle is rounded. Angles of different lattices differ by far more.
-MOST_ROWS_OFF = 1.0  # A droplet follows the rows if it comes no farther off its row than this many row spacings.
+MOST_ROWS_OFF = 1.0  # A droplet follows the rows if it is never farther off its row than this many row spacings.
 # A run can show that droplets follow the rows only if a straight path of its length would cross at least this many
 # rows.
 FEWEST_ROWS = 2.0
 
 
 def verdicts(runs: pandas.DataFrame) -> pandas.DataFrame:
-    """For each run, its angle, and whether the droplet leaves the rows or follows them. Runs that are too short to show
-    either, failed and unfinished runs do neither."""
+    """For each run, its angle, and whether the droplet leaves the rows or follows them. Both are false for failed and
+    unfinished runs, and for runs that are too short to decide."""
     angle, side = np.radians(abs(runs["lattice_angle"])), np.where(runs["lattice_angle"] < 0, -1, 1)
     of_pitch = np.select([runs["obstacle_filling"] == "triangular", runs["obstacle_filling"] == "rhombic"], [math.sqrt(3) / 2, np.cos(angle)], 1)
     spacing = (runs["obstacle_gap"] + runs["obstacle_diameter"]) * of_pitch  # spacing of the rows
@@ -54,8 +54,8 @@ def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
 
 def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFrame:
     """For every set of parameters: the parameters that vary, the ends of the bracket, `lower` and `upper`, and the
-    number of `runs` that count: those of droplets that leave the rows or follow them.
-    @param parameters  names of columns; a column is left out if its values follow from the columns before it
+    number of `runs` that leave the rows or follow them.
+    @param parameters  names of columns; a column is excluded if its values follow from the columns before it
     @throws UserError"""
     lattices = rows[rows["lattice_angle"].notna()]
     if lattices.empty:
@@ -74,7 +74,7 @@ def table_of(rows: pandas.DataFrame, parameters: Sequence[str]) -> pandas.DataFr
 
 def nearest_angle(plan: dict[str, Any], angle: float) -> float | None:
     """The angle nearest to `angle` for which the lattice has a period in its box. @param plan  first line of `clogsweep
-    --dry-run --format json` with this `lattice-angle`, which clogsweep takes if such an angle is near"""
+    --dry-run --format json` with this `lattice-angle`; clogsweep accepts this value if such an angle is near"""
     angles = plan.get("nearest", []) if "refused" in plan else [lattice["angle"] for lattice in plan["lattices"]]
     return min(angles, key=lambda one: abs(one - angle)) if angles else None
 

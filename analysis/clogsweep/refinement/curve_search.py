@@ -1,4 +1,4 @@
-"""Chooses the values and seeds whose runs improve the fitted curve of lambda most."""
+"""Chooses the values and seeds of the runs that improve the fitted curve of lambda most."""
 
 import itertools
 import math
@@ -21,7 +21,7 @@ from .membership import Membership, Values
 MOST_VALUES = {1: 100, 2: 13}  # Largest number of values of each key, by the number of keys.
 FIRST_VALUES = {1: 7, 2: 4}
 MOST_COMBINATIONS = 500
-COSTLY = 0.1  # Share of the work on values without clogs that is named.
+COSTLY = 0.1  # A sentence names the work on values without clogs if it is a larger share of all work than this.
 SHARE_OF_ROUND = 0.5  # Work of a round, divided by the work of all earlier rounds.
 
 
@@ -33,7 +33,7 @@ class Options(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What the search knows at one moment."""
+    """The runs so far, and the curve that follows from them."""
 
     runs: pandas.DataFrame  # Sums over the runs of each value, including failed runs.
     curve: Curve | None  # The curve at the candidates, or None if no run has covered any distance.
@@ -103,7 +103,7 @@ class CurveSearch:
         table = pandas.DataFrame({
             "values": runs["values"], "runs": 1, "failed": failed, "last_seed": runs["seed"].astype(int),
             "hours": runs["processor_seconds"] / HOUR, "clogs": runs["status"] == "clogged",
-            # A failed run is censored where it was last sound.
+            # A failed run is censored at its sound distance.
             "distance": runs["distance"].where(~failed, runs["sound_distance"]).clip(lower=0).fillna(0), "time": runs["time"],
             "work": runs["steps"] * runs["vertices"].where(runs["model"] == "dp", 1)})
         of_values = table.groupby("values")
@@ -163,7 +163,7 @@ class CurveSearch:
 
 
 def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, Numbers]:
-    """The values at which some droplet has moved, and their places on the curve."""
+    """The values of the key with at least one droplet that has moved, and the places of these values on the curve."""
     runs = runs[(runs["distance"] > 0) & (runs["time"] > 0)]
     return runs, np.log(np.array(list(runs.index)))
 

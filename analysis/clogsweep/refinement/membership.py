@@ -3,7 +3,7 @@
 A row does not store the parameters as they were given, but as clogsweep resolved them. For instance, the density of a
 saturated array follows from the gap, and the box of a lattice follows from its angle. So clogsweep itself resolves the
 values of the search: `--points ... --dry-run --format json` prints the columns in which the tasks differ. A row belongs
-to a value if all its parameters are those that clogsweep gives to this value.
+to a value if all its parameters are those that clogsweep resolves for this value.
 """
 
 from collections.abc import Callable, Sequence
@@ -63,8 +63,8 @@ class Membership:
                                  for i, column in enumerate(self._key_columns))
 
     def of_curve(self, rows: pandas.DataFrame, deciding: Callable[[str], bool] = lambda _: True) -> pandas.DataFrame:
-        """The rows that agree with the first run in all parameters that are the same for all candidates.
-        @param deciding  tells whether a column has to agree
+        """The rows that agree with the first run in all parameters that are equal for all candidates.
+        @param deciding  returns whether a column has to agree
         @throws UserError  if the file does not contain the first run"""
         fixed = [name for name in self._names if name not in self._varying and deciding(name)]
         first = rows.loc[rows["task"] == 0, fixed]  # The run of the first point has the number 0.

@@ -58,8 +58,8 @@ class Fit:
 
     @property
     def groups(self) -> pandas.DataFrame:
-        """Those results of each group that are single numbers or words. P(r) and incidences are in survival() and
-        `output`."""
+        """The results of each group that are single numbers or words. P(r) and incidences are in survival() and
+        `output` instead."""
         import pandas
 
         flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)}

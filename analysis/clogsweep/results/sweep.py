@@ -39,9 +39,10 @@ class Sweep:
 
     - `rows`: table with a row for each run, as it was when the file was opened; `rows.attrs` contains `units` and
       `meanings` of the columns
+    - `droplets`: table with a row for each member of a family, with break-up=daughters
     - `attributes`: version, commit, config, command line
 
-    All other methods run the programs on the file as it is now.
+    All other methods run the programs on the present file.
     """
 
     def __init__(self, path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> None:
@@ -55,6 +56,7 @@ class Sweep:
         with stored.opened(self.path, stored.SWEEP, programs) as file:
             self._records = file["runs"][:]
             self.rows = stored.table_of(file)
+            self.droplets = stored.droplets(file)
             self.attributes: dict[str, str] = stored.attributes(file)
 
     def _program(self, name: str) -> pathlib.Path:
@@ -121,7 +123,7 @@ class Sweep:
         """Draws user-supplied circles with the places where droplets were released, passed and clogged, and the paths
         of droplets. Each of up to six parameter sets has a panel.
 
-        @param ways  number of runs of each panel whose paths are drawn as lines
+        @param ways  number of runs of each panel with a path that is drawn as a line
         @param map  number of runs in the map of each panel; all of them are replayed
         @param jobs  number of simultaneous replays
         @throws UserError  if the sweep has no user-supplied circles, or circles of several devices

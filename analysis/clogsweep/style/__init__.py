@@ -49,8 +49,8 @@ OBSTACLE = "0.72"
 NOTE_SIZE = 8
 CURVE = "curve "  # The name (`gid`) of a curve's artists begins with this word. The curve's label follows.
 DROPLET = "#D55E00"
-# An arrow that rises from a foot. The foot is at the lower bound, so the arrow fills the upper half of a marker's
-# square.
+# An arrow that rises from a foot. The foot is at the lower bound, in the middle of the marker's square, so the arrow
+# fills the upper half of this square.
 LOWER_BOUND = Path([(-0.25, 0), (0.25, 0), (0, 0), (0, 1), (-0.25, 0.6), (0, 1), (0.25, 0.6)], [1, 2, 1, 2, 1, 2, 2])
 
 
@@ -197,8 +197,8 @@ def logarithmic_margin(values: Collection[float]) -> float:
 
 def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
     """The factor by which the points of a curve are shifted on logarithmic abscissae, so that the bars of different
-    curves can be distinguished. The shift is a fraction of the axis. The shift is smaller if neighbouring values or the
-    frame are near."""
+    curves can be distinguished. The shift is a fraction of the axis. It is smaller if neighbouring values or the frame
+    are near."""
     ordered = sorted(set(values))
     outermost = max(num_curves - 1, 1) / 2
     nearest = min((b / a for a, b in zip(ordered, ordered[1:])), default=2.0)
@@ -208,31 +208,34 @@ def side_by_side(index: int, num_curves: int, values: Collection[float]) -> floa
 
 
 def far_apart(values: Collection[float], span: float) -> list[float]:
-    """Chooses the values whose labels have room side by side on a logarithmic axis. @param span  last value of the axis
-    divided by the first"""
+    """Chooses the values whose labels have room side by side on a logarithmic axis, round numbers first. @param span
+    last value of the axis divided by the first"""
+    def roundness(value: float) -> tuple[bool, int]:
+        digits = f"{value:.2e}".partition("e")[0].replace(".", "").rstrip("0")
+        return digits not in ("1", "2", "5"), len(digits)
+
     kept: list[float] = []
-    for value in sorted(set(values)):
-        if not kept or math.log(value / kept[-1]) >= 0.08 * math.log(span):
+    for value in sorted(set(values), key=lambda value: (roundness(value), value)):
+        if all(abs(math.log(value / other)) >= 0.08 * math.log(span) for other in kept):
             kept.append(value)
-    return kept
+    return sorted(kept)
 
 
 def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
     """Labels a logarithmic abscissa with plain numbers. If the values are few or within a decade, the values themselves
-    are the labels. A label for which there is no room is one line lower."""
+    are the ticks. Values for which there is no room have no label."""
     axes.set_xscale("log")
     axis = axes.xaxis
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
     if values and (len(set(values)) <= 10 or max(values) < 10 * min(values)):
         span = max(values) / min(values)
-        axis.set_ticks(upper := far_apart(values, span), minor=False)
         # Beside a single value, round numbers show the scale.
-        lower = sorted(set(values) - set(upper)) if span > 1 else list(matplotlib.ticker.MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(0.8 * upper[0], 1.25 * upper[0]))
-        axis.set_ticks(lower, minor=True)
-        labelled = far_apart(lower, span)
-        axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}" if value in labelled else ""))
-        axis.set_tick_params(which="minor",
-                             pad=4 + 1.2 * matplotlib.font_manager.FontProperties(size=matplotlib.rcParams["xtick.labelsize"]).get_size_in_points())
+        locator = matplotlib.ticker.MaxNLocator(4, steps=[1, 2, 5, 10])
+        around = [] if span > 1 else locator.tick_values(0.8 * min(values), 1.25 * min(values))
+        shown = span if span > 1 else logarithmic_margin(values)**2
+        axis.set_ticks(labelled := far_apart({*values, *around}, shown), minor=False)
+        axis.set_ticks(sorted(set(values) - set(labelled)), minor=True)
+        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     else:
         low, high = (min(values), max(values)) if values else axes.get_xlim()
         plain_logarithmic(axis, high / low)
@@ -244,8 +247,9 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
 
 
 def logarithmic_ordinate(axes: Axes) -> None:
-    """Labels a logarithmic ordinate with plain numbers if it has fewer than two decades, because there would be too few
-    powers of ten. Labels are at 1, 2 and 5, or at every tick if the ordinate has less than a factor of five."""
+    """Labels a logarithmic ordinate with plain numbers if it has fewer than two decades, because there are too few
+    powers of ten for labels. Labels are at 1, 2 and 5, or at every tick if the ordinate has less than a factor of
+    five."""
     axes.set_yscale("log")
     axis = axes.yaxis
     usual = axis.get_major_formatter()

@@ -34,7 +34,7 @@ def in_lines(text: str, fits: Callable[[str], bool], between: str = ", ") -> str
 
 
 def fitting(figure: FigureBase, size: float, pixels: float) -> Callable[[str], bool]:
-    """Returns a function that tells whether a line of text in letters of `size` points fits into this width."""
+    """Returns a function that checks whether a line of text in letters of `size` points fits into this width."""
     def fits(line: str) -> bool:
         text = figure.text(0, 0, line, fontsize=size)
         width = text.get_window_extent(figure.canvas.get_renderer()).width

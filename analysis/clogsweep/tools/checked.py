@@ -8,7 +8,7 @@ from .errors import UserError
 
 
 def whole(name: str, value: Any, least: int) -> None:
-    """Checks a number. @throws UserError  unless the value is a whole number that is not smaller than `least`"""
+    """Checks a number. @throws UserError  if the value is not a whole number, or is smaller than `least`"""
     try:
         is_right = operator.index(value) >= least
     except TypeError:

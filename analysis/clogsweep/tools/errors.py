@@ -14,7 +14,7 @@ class UserError(Exception):
 
 
 class NotThere(UserError):
-    """With --draw-only, a result is needed that has not been computed yet or that belongs to another run."""
+    """With --draw-only, a required result does not exist yet or belongs to another run."""
 
 
 class ProgramFailed(Exception):

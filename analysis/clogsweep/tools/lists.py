@@ -1,4 +1,4 @@
-"""Reads lists of numbers as clogsweep does. tests/sweep/value_lists.txt has the cases that both readers have to meet."""
+"""Reads lists of numbers as clogsweep does. tests/sweep/value_lists.txt has test cases for both readers."""
 
 import math
 import re

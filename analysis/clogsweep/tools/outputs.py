@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from .errors import UserError
 
-# Whether this process is a command, whose pictures do not depend on the user's settings of matplotlib.
+# Whether this process is a command. Pictures of commands do not depend on the user's settings of matplotlib.
 are_of_command = False
 
 # The first bytes of the files that commands make.
@@ -18,8 +18,8 @@ BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-"
 
 
 def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
-    """Checks that a file can be written, before minutes are spent on a computation. The file may replace an earlier
-    file of the same kind, but no other file.
+    """Checks that a file can be written, so that no long computation is lost. The file may replace an earlier file of
+    the same kind, but no other file.
 
     @param kind  a key of BEGINNINGS
     @param inputs  files that the command reads

@@ -1,5 +1,5 @@
-"""Shows the progress of a script on the standard error. On a terminal this is one line that is renewed. Elsewhere a new
-line appears now and then."""
+"""Shows the progress of a script on the standard error. On a terminal this is one line that is redrawn. Elsewhere a new
+line is printed from time to time."""
 
 import sys
 import time
@@ -23,7 +23,7 @@ class StatusLine:
         self.on_terminal = sys.stderr.isatty()
         self.begin = self.last = time.monotonic()
 
-    def renew(self, text: Callable[[float], str]) -> None:
+    def redraw(self, text: Callable[[float], str]) -> None:
         """Shows a new text if the last one is old enough. @param text  makes the text from the seconds since the
         beginning"""
         now = time.monotonic()
@@ -39,10 +39,10 @@ class StatusLine:
 
 
 def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
-    """Yields the items. Now and then it shows the number of finished items and the remaining time."""
+    """Yields the items. From time to time it shows the number of finished items and the remaining time."""
     line = StatusLine()
     for number, item in enumerate(items, start=1):
         yield item
-        line.renew(lambda seconds: f"{what} {number} of {total}, "
-                                   f"{readable_duration(seconds * (total / number - 1))} left")
+        line.redraw(lambda seconds: f"{what} {number} of {total}, "
+                    f"{readable_duration(seconds * (total / number - 1))} left")
     line.wipe()

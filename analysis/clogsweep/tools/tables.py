@@ -15,7 +15,7 @@ from .errors import UserError
 
 # Errors that spreadsheets write instead of a value: #N/A, #DIV/0!, #REF!, #WERT!, Err:502, and those of other languages.
 ERROR_WORD = re.compile(r"#[^\sa-z]{2,}\s*[!?]|(?i:#(n/a|na|nv|n/d|n/b|i/t|н/д|yok|hiányzik|getting_data))|(?i:(err|fehler|erreur):[0-9]+)")
-HASHES = re.compile("##+")  # Excel's cells in a column that is too narrow.
+HASHES = re.compile("##+")  # Excel writes such cells in a column that is too narrow.
 
 
 def read_text(path: str) -> str:
@@ -49,7 +49,8 @@ def refuse(cell: str, number: int) -> None:
 
 def refuse_lost_line(comment: str, separator: str) -> None:
     """@param separator  of the table, or "" if no line of the table precedes this line
-    @throws UserError  if a line that begins with # is a line of the table whose first cell is an error of a spreadsheet"""
+    @throws UserError  if a line that begins with # is a line of the table, and its first cell is an error of a
+    spreadsheet"""
     ends = '"' if comment.startswith('"') else {"": "[,;\t]", " ": "\\s"}.get(separator, re.escape(separator))
     cell = re.split(ends, comment.removeprefix('"'))[0].strip()
     for word in [cell, *(cell.split()[:1] if separator in ("", " ") else [])]:
@@ -60,7 +61,7 @@ def refuse_lost_line(comment: str, separator: str) -> None:
 
 
 class Numbers:
-    """Reads the numbers of one table, whose cells may have decimal commas unless commas separate them."""
+    """Reads the numbers of one table. The numbers may have decimal commas unless commas separate the cells."""
 
     def __init__(self) -> None:
         self._are_decimal = False
@@ -140,8 +141,8 @@ def columns_of(titles: Sequence[str]) -> dict[str, int]:
 
 
 def refuse_misread(path: str | os.PathLike[str]) -> None:
-    """Call this before pandas reads the table: pandas takes errors of spreadsheets for comments or missing values, and
-    renames the second of two columns. @throws UserError"""
+    """Call this before pandas reads the table. pandas treats errors of spreadsheets as comments or missing values, and
+    renames the second of two columns with the same name. @throws UserError"""
     for index, (number, cells) in enumerate(rows(os.fspath(path))):
         if index == 0:
             try:

@@ -11,8 +11,8 @@ def escaped(letter: str) -> str:
 
 
 def printable(text: object, kept: str = "") -> str:
-    """The text with escapes for control characters and for bytes that are not UTF-8. @param kept  characters that stay,
-    such as line breaks"""
+    """The text with escapes for control characters and for bytes that are not UTF-8. @param kept  characters that are
+    not escaped, such as line breaks"""
     return "".join(letter if letter.isprintable() or letter in kept else escaped(letter) for letter in str(text))
 
 

@@ -29,8 +29,8 @@ class CommandLine {
   CommandLine& flag(const char* name, const char* help);
   /// Declares an option with a value. @param otherwise  the default value; nullptr: none
   CommandLine& option(const char* name, const char* help, const char* otherwise = nullptr);
-  /// Declares an option whose value may also be given as a word without dashes. Such words are the values of
-  /// these options in the order in which the options were declared.
+  /// Declares an option whose value may also be given as a word without dashes. If several options are
+  /// declared in this way, the words are assigned to them in the order of the declarations.
   CommandLine& word(const char* name, const char* help);
   /// Declares an option for all further words without dashes.
   CommandLine& words(const char* name, const char* help);
@@ -67,10 +67,10 @@ class CommandLine {
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
-  /// The given texts with numbers that have units, by key. settings() does not contain these texts, because
-  /// only the laboratory of --lab can convert them.
+  /// Texts of keys with numbers that have units. settings() does not contain these texts, because their
+  /// conversion needs the laboratory of --lab.
   const std::map<std::string, std::string>& texts_with_units() const { return texts_with_units_; }
-  /// The command as it was given, in one line.
+  /// The command that the user gave, in one line.
   const std::string& text() const { return text_; }
   std::string help() const;
 
@@ -84,7 +84,7 @@ class CommandLine {
       "0.2,0.3  1..50  'lin(a,b,n)'  'log(a,b,n)'  (quotes, since shells read parentheses)"};
   boost::program_options::options_description keys_{"Keys of all else"};
   boost::program_options::positional_options_description positional_;
-  std::set<std::string> words_;  // options whose values may be words without dashes
+  std::set<std::string> words_;  // options with values that may be words without dashes
   std::vector<std::string> commands_;
   std::string surplus_remedy_ = "options start with --, settings are key=value";
   boost::program_options::variables_map values_;
@@ -94,7 +94,7 @@ class CommandLine {
 
   double number(const std::string& option) const;
   [[noreturn]] void refuse_missing(const std::string& option) const;
-  /// Whether the word is an option whose value is the word after it.
+  /// Whether the word is an option that takes the next word as its value.
   bool awaits_value(const std::string& word) const;
   void refuse_misspelt_command(const std::string& word) const;
   [[noreturn]] void refuse_surplus_words() const;

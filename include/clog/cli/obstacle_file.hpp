@@ -10,9 +10,9 @@ namespace clog::cli {
 
 /// Reads circles from a text file with one circle per line. The columns are x, y and the diameter [sigma],
 /// unless the first line names the columns. Commas, semicolons, tabs or blanks separate the cells. A circle
-/// without a diameter gets obstacle-diameter. Lines starting with # are skipped, except `# units=um
-/// droplet=200um`, which gives the unit of the lengths that follow and the diameter of the droplet. In a file
-/// with this comment, every circle needs a diameter.
+/// without a diameter gets obstacle-diameter. Lines starting with # are skipped. The exception is a comment
+/// such as `# units=um droplet=200um`: it gives the unit of all further lengths and the diameter of the
+/// droplet. In a file with this comment, every circle needs a diameter.
 /// @param name  name of the file, followed by @0.8mm to scale the circles to a droplet of 0.8 mm
 /// @throws Error naming the line
 OwnCircles read_circles(const std::string& name);

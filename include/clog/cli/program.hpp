@@ -34,8 +34,8 @@ using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 /// @param libraries  names and versions, printed after the program's own
 bool parse_command(CommandLine& line, int argc, const char* const* argv, const NamedTexts& libraries = {});
 
-/// The origin of a file: program, version, `git describe` of its sources, compiler, config, command line,
-/// time.
+/// The origin of a file: program, version, `git describe` of the program's sources, compiler, config, command
+/// line, time.
 NamedTexts origin(const CommandLine& line);
 
 }  // namespace clog::cli

@@ -39,7 +39,7 @@ bool is_error_word(std::string_view cell);
 struct TableLine {
   int number;                      ///< number of the line, from 1
   std::vector<std::string> cells;  ///< without quotes and blanks around them; empty cells are kept
-  char separator;                  ///< the separator between cells; a blank stands for one or more blanks
+  char separator;                  ///< the separator between cells; ' ' means one or more blanks
 };
 /// The cells without empty ones at the end beyond the number of columns: a spreadsheet adds such cells.
 std::vector<std::string> without_surplus_cells(std::vector<std::string> cells, std::size_t num_columns);

@@ -5,8 +5,8 @@
 
 namespace clog::console {
 
-/// Whether the commas of a number may separate thousands: those of 1,350 and 12,345,678 may, those of 0,350
-/// and 1,35 may not.
+/// Whether the commas of a number may separate thousands: true for 1,350 and 12,345,678, false for 0,350 and
+/// 1,35.
 bool may_have_thousands(std::string_view number);
 
 /// Decides whether the commas in the numbers of one table are decimal commas or separate thousands.

@@ -15,8 +15,8 @@ class Stopped : public std::runtime_error {
 /// Signals that stop a program. A closed terminal sends HUP; batch systems warn by USR1, USR2 and XCPU.
 inline constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
 
-/// From now on these signals only set the flag that stop_signalled() returns. SIGHUP stays ignored under
-/// nohup.
+/// After this call, these signals only set the flag that stop_signalled() returns. Under nohup, SIGHUP is
+/// still ignored.
 void catch_stop_signals();
 bool stop_signalled();
 

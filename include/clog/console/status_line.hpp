@@ -6,7 +6,7 @@
 
 namespace clog::console {
 
-/// Reports progress. On a terminal, one line is renewed; in a file or a pipe, a new line appears from time to
+/// Reports progress. On a terminal, one line is redrawn; in a file or a pipe, a new line appears from time to
 /// time.
 class StatusLine {
  public:
@@ -16,9 +16,9 @@ class StatusLine {
 
   StatusLine(std::ostream& out, Screen screen);
 
-  /// Whether it is time to renew the line.
+  /// Whether it is time to redraw the line.
   bool is_due() const;
-  void renew(const std::string& text);
+  void redraw(const std::string& text);
   /// Prints a permanent line, on any screen.
   void say(const std::string& text);
   /// Keeps the line on a terminal; other text follows below it.
@@ -31,7 +31,7 @@ class StatusLine {
 
   std::ostream& out_;
   Screen screen_;
-  Clock::time_point last_renewal_ = Clock::now();
+  Clock::time_point last_drawn_ = Clock::now();
   std::string text_;
 };
 

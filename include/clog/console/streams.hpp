@@ -16,7 +16,7 @@ void say(const std::string& line);
 /// Passes everything printed so far to the system. @throws std::ios_base::failure if it cannot be written
 void flush_output();
 
-/// Whether nobody reads the output any more.
+/// Whether the reader of the output has closed it.
 bool is_reader_gone();
 
 }  // namespace clog::console

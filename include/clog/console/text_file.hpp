@@ -4,9 +4,9 @@
 
 namespace clog::console {
 
-/// The whole text of a file, or of a pipe (`/dev/stdin`, `<(command)`), which is read to its end. Lines end
-/// with \n alone. Converts UTF-16 to UTF-8 and removes a byte-order mark. @throws Error for text in another
-/// encoding, or if the file cannot be read; Stopped if a signal arrives meanwhile
+/// The whole text of a file or a pipe (`/dev/stdin`, `<(command)`). A pipe is read to its end. In the text,
+/// lines end with \n alone. Converts UTF-16 to UTF-8 and removes a byte-order mark. @throws Error for text in
+/// another encoding, or if the file cannot be read; Stopped if a signal arrives while it reads
 std::string read_text(const std::string& path);
 
 }  // namespace clog::console

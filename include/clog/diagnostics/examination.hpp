@@ -16,8 +16,8 @@ struct Finding {
 /// Checks whether a sweep on these ranks, with this `output`, would have problems.
 std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output);
 
-/// Under srun without PMIx, or under the mpirun of another MPI, every process would take itself for the only
-/// rank. @throws Error if this seems to be the case
+/// Under srun without PMIx, or under the mpirun of another MPI, every process would assume that it is the
+/// only rank. @throws Error if this seems to be the case
 void refuse_to_be_alone(int num_ranks);
 
 /// The setting that lets ranks use every core of their host.

@@ -9,7 +9,7 @@ namespace clog::diagnostics {
 // process's own group and all enclosing groups counts. Limits of version 1 are ignored.
 
 /// Number of cores that the control groups grant to all of their processes together: the processor time that
-/// these may use per period, divided by the period. 0 if there is no limit.
+/// these processes may use per period, divided by the period. 0 if there is no limit.
 /// @param root  folder that contains proc and sys
 double granted_cores(const std::filesystem::path& root = "/");
 
@@ -18,8 +18,8 @@ double granted_cores(const std::filesystem::path& root = "/");
 /// @param root  folder that contains proc and sys
 double available_memory(const std::filesystem::path& root = "/");
 
-/// Raises the limit on open files as far as allowed, if the limit is low. MPI needs about twenty open files;
-/// with fewer it crashes or prints messages of its own. @throws Error if it stays too low
+/// If the limit on open files is low, raises it as far as allowed. MPI needs about twenty open files; with
+/// fewer, MPI crashes or prints messages of its own. @throws Error if the limit stays too low
 void require_open_files();
 
 }  // namespace clog::diagnostics

@@ -5,8 +5,8 @@
 
 namespace clog::fit {
 
-/// Outcome of one run: the droplet went `distance` [sigma] and clogged there, or was still moving when it was
-/// last seen (censored).
+/// Outcome of one run. Either the droplet clogged after the `distance` [sigma], or it was still moving when
+/// it was last seen there (censored).
 struct Observation {
   double distance;
   bool clogged;
@@ -23,8 +23,8 @@ struct Interval {
 /// @throws std::invalid_argument unless 0 < confidence < 1
 void require_confidence(double confidence);
 
-/// The z for which a standard normal number lies between -z and z with the probability `confidence`. z^2 is
-/// chi-squared's quantile for one degree of freedom. For very small `confidence` z^2 underflows, but z does
+/// The z for which a standard normal number is between -z and z with the probability `confidence`. z^2 is the
+/// quantile of chi-squared with one degree of freedom. For very small `confidence` z^2 underflows, but z does
 /// not.
 double normal_deviate(double confidence);
 
@@ -42,7 +42,7 @@ struct CloggingLength {
 /// Maximum likelihood for censored exponential data: lambda = S/d, with S the sum of all distances and d the
 /// number of clogs.
 ///
-/// The interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2. With d fixed beforehand, or when
+/// The interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2. If d is fixed beforehand, or if
 /// every run has clogged, 2 S/lambda is chi-squared distributed with exactly 2d degrees of freedom (Epstein
 /// and Sobel 1953). Here runs are censored after a given time, so d is as random as S. If the runs ended just
 /// before their next clog, 2d + 2 degrees of freedom would be exact. If they ended just after a clog, 2d
@@ -50,8 +50,8 @@ struct CloggingLength {
 /// (1953); Lawless, Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a
 /// one-sided lower bound, S/log(1/(1 - confidence)), which corresponds to 2d + 2.
 ///
-/// `profile` holds all lambda with 2 (l(S/d) - l(lambda)) below chi-squared's quantile for one degree of
-/// freedom, l(lambda) = -d log lambda - S/lambda.
+/// `profile` contains all lambda for which 2 (l(S/d) - l(lambda)) is below the quantile of chi-squared with
+/// one degree of freedom, where l(lambda) = -d log lambda - S/lambda.
 ///
 /// Distances below zero (a droplet pushed back on release) count as zero. All lengths are NaN where the sum
 /// of the distances is not finite.
@@ -59,7 +59,7 @@ struct CloggingLength {
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
 
 /// Half of the chi-squared interval's width divided by the estimate; infinite without clogs. The interval is
-/// the one for a sweep in which all runs have clogged; with censored runs it is a little narrower.
+/// that of a sweep in which all runs have clogged; with censored runs it is a little narrower.
 double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,

@@ -8,8 +8,8 @@
 
 namespace clog::fit {
 
-/// Outcome of a run that several causes may end: the droplet went `distance` [sigma], and one of the causes
-/// ended the run there, or the droplet was still moving when it was last seen (censored).
+/// Outcome of a run that several causes may end. Either one of the causes ended the run after the `distance`
+/// [sigma], or the droplet was still moving when it was last seen there (censored).
 struct CompetingEnd {
   double distance;
   std::optional<int> cause;
@@ -28,8 +28,8 @@ struct IncidenceStep {
 
 /// Aalen and Johansen's estimate (Scand. J. Stat. 5, 141 (1978)). At every distance with ends, F_c grows by P
 /// d_c/n. Here P is the probability to have reached this distance (survival_curve() of all causes), n the
-/// number of runs at risk, and d_c the number of these runs that the cause ends. So the F_c of all causes and
-/// P add up to 1. This does not hold for one minus the survival curves of single causes, with the other ends
+/// number of runs at risk, and d_c the number of these runs that the cause ends. So P and the F_c of all
+/// causes add up to 1. This would not hold for survival curves of single causes in which the other ends are
 /// censored.
 ///
 /// There is one step per distance with ends by the cause, in increasing order; at equal distances ends come

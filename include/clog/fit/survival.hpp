@@ -7,8 +7,8 @@
 
 namespace clog::fit {
 
-/// Interval of a probability P between 0 and 1: P^exp(-+ z s/|log P|), where s^2 is the variance of log P, so
-/// that log(-log P) has the error s/|log P|. NaN for any other P.
+/// Interval of a probability P between 0 and 1: P^exp(-+ z s/|log P|), where s^2 is the variance of log P.
+/// With this interval, log(-log P) has the error s/|log P|. NaN for any other P.
 Interval log_log_interval(double probability, double log_variance, double confidence);
 
 /// A step of the estimated P(r), the probability to travel farther than r without a clog.
@@ -46,14 +46,14 @@ struct WeibullTest {
 };
 WeibullTest test_exponentiality(std::span<const Observation> runs);
 
-/// Which groups are not exponential: those with p < 0.05 by Holm's step-down test (Scand. J. Stat. 6, 65
-/// (1979)) of all groups with ten clogs or more. So if all groups are exponential, only one table in twenty
-/// marks any group, however many groups it has. Groups with fewer clogs are not tested, because p would be
-/// too small.
+/// Finds the groups with a P(r) that is not exponential: those with p < 0.05 by Holm's step-down test (Scand.
+/// J. Stat. 6, 65 (1979)) of all groups with ten clogs or more. If all groups are exponential, only one table
+/// in twenty marks any group, however many groups it has. Groups with fewer clogs are not tested, because
+/// their p would be too small.
 std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups);
 
-/// Whether half of the distances or more are equal to another one. Distances of independent droplets are not,
-/// unless they were rounded coarsely.
+/// Whether at least half of the distances are equal to another distance. For independent droplets this
+/// happens only if the distances were rounded coarsely.
 bool are_mostly_equal(std::vector<double> distances);
 
 }  // namespace clog::fit

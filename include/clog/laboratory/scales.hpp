@@ -11,19 +11,20 @@ namespace clog::laboratory {
 /// The model's units in a laboratory, and the model's numbers for the droplet of the laboratory. Numbers are
 /// NaN if the description of the laboratory is incomplete.
 struct Scales {
-  double length = 0;   ///< sigma [m]
-  double gravity = 0;  ///< g_exp [m/s^2]
-  double time = 0;     ///< t0 = sqrt(sigma/g_exp) [s]
-  double speed = 0;    ///< v_t [m/s]
+  double length = 0;   ///< the model's sigma, the diameter of the droplet [m]
+  double gravity = 0;  ///< acceleration g_exp along the plates [m/s^2]
+  double time = 0;     ///< the model's t0 = sqrt(sigma/g_exp) [s]
+  double speed = 0;    ///< terminal speed v_t [m/s]
   double tension =
       0;  ///< interfacial tension of a droplet that moves like a simulated droplet with Gamma = 1 [N/m]
-  double line_tension_experiment = 0;  ///< Gamma_exp
+  double line_tension_experiment = 0;  ///< Gamma_exp, from the measured tension
   double line_tension = 0;             ///< Gamma of the model, tension_ratio times Gamma_exp
   double sag = 0;                      ///< sag of a droplet of this line tension on a flat wall [sigma]
-  double wall_stiffness = 0;           ///< E_w of the soft disk with the same sag
-  double terminal_speed = 0;           ///< V_t
+  double wall_stiffness = 0;           ///< E_w of the soft disk with this sag
+  double terminal_speed = 0;           ///< V_t, the terminal speed in the model's units
   double capillary_number = 0;         ///< Ca = pi/(4 Gamma), at the terminal speed
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]
+  double break_up_neck = 0;  ///< width of a neck that breaks; it equals the thickness of the cell [sigma]
 };
 Scales scales_of(const Laboratory& lab);
 
@@ -31,8 +32,8 @@ Scales scales_of(const Laboratory& lab);
 std::string line_tension_text(const Scales& scales);
 /// The text of each key, by the key's name.
 using Texts = std::map<std::string, std::string>;
-/// The laboratory's description, and two properties of its droplet unless the user has set them: the terminal
-/// speed, and the line tension or, for soft disks, the wall stiffness.
+/// The laboratory's description, and two properties of its droplet: the terminal speed, and the line tension
+/// or, for soft disks, the wall stiffness. A property that the user has set is not included.
 /// @param model  empty for keys of all models
 Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model);
 /// A key's text with its numbers in the model's units: `0.2mm,0.3mm` is `0.1,0.15` with a droplet of 2 mm.
@@ -40,16 +41,17 @@ Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, cons
 /// @throws Error that names the key, if one of its numbers has another unit than the key can have
 std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales);
 
-/// The sag: how far the centroid of a droplet sinks on a flat wall that it does not wet [sigma]. It follows
-/// from the two-dimensional equation of Young and Laplace. NaN for Gamma below 1e-3 and above 1e4.
+/// The sag: the distance by which the centroid of a droplet sinks on a flat wall that it does not wet
+/// [sigma]. It follows from the two-dimensional Young-Laplace equation. NaN for Gamma below 1e-3 and above
+/// 1e4.
 double sag_on_wall(double line_tension);
 /// Gamma of the droplet with this sag; NaN if there is none.
 double line_tension_of_sag(double sag);
 /// E_w = pi/(16 sag), of the soft disk with this sag.
 double wall_stiffness_of_sag(double sag);
 
-/// Gamma of the laboratory's droplet between upright plates, where gravity along the plates is strongest and
-/// Gamma smallest; NaN if the interfacial tension is unknown.
+/// Gamma of the laboratory's droplet between upright plates. There gravity along the plates is strongest, so
+/// Gamma is smallest. NaN if the interfacial tension is unknown.
 double line_tension_upright(const Laboratory& lab);
 /// Tilt at which a droplet of the laboratory has this Gamma [rad]; NaN if none does.
 double tilt_of(double line_tension, const Laboratory& lab);

@@ -5,8 +5,8 @@
 
 namespace clog::results {
 
-/// Number of busy ranks during one session of a sweep, as means over stretches of time. All stretches have
-/// the same length, which grows with the length of the session.
+/// Mean numbers of busy ranks during one session of a sweep, for intervals of time. All intervals have the
+/// same length, which grows with the length of the session.
 class Activity {
  public:
   /// @param num_ranks  number of ranks that compute
@@ -20,7 +20,7 @@ class Activity {
   void restarted() { ++num_restarts_; }
 
   /// One line of JSON. `idle_seconds` is the sum over all ranks. `tail_seconds` is the part of this sum after
-  /// the last start of a task: then ranks without work wait for the last tasks to end.
+  /// the last start of a task: from then on, ranks without work wait for the last tasks to end.
   /// @param start_time  time at which the session began, as text
   std::string line(const std::string& start_time, double now) const;
 
@@ -28,14 +28,14 @@ class Activity {
   int num_ranks_;
   int num_busy_ = 0;
   int num_restarts_ = 0;
-  double stretch_ = 1;        // [s]
-  std::vector<double> busy_;  // busy time of all ranks in each stretch [s]
+  double interval_ = 1;       // length of an interval [s]
+  std::vector<double> busy_;  // busy time of all ranks in each interval [s]
   double last_ = 0;
   double last_start_ = 0;
   double busy_seconds_ = 0;
   double tail_busy_seconds_ = 0;  // since the last start
 
-  void go_on(double now);
+  void count_until(double now);
   void lengthen();
 };
 

@@ -26,8 +26,9 @@ struct Side {
 /// (the text of `lab.cfg`), or "" if one laboratory applies to all runs.
 using ScalesByLaboratory = std::map<std::string, LaboratoryScale>;
 const LaboratoryScale& scale_in(const ScalesByLaboratory& scales, const sweep::RunRow& row);
-/// Whether the droplet's diameter and tilt fix the value of this column in these runs, each of which has a
-/// laboratory in `scales`. Columns without a unit, such as friction, never follow: they may coincide.
+/// Whether the value of this column follows from the droplet's diameter and tilt in these runs. Each run must
+/// have a laboratory in `scales`. Columns without a unit, such as friction, never count as following: their
+/// values could agree by chance.
 bool follows_from_droplet(const sweep::Column& column, const std::vector<const sweep::RunRow*>& rows,
                           const ScalesByLaboratory& scales);
 
@@ -37,10 +38,11 @@ struct Flaws {
   std::vector<Doubt> doubts;
   fit::WeibullTest weibull{};
   std::string runs{};  ///< of simulated runs, see runs_of()
-  /// Number of the group. Two comparisons may have a group in common, also as copies in two laboratories.
+  /// Number of the group. Two comparisons may contain the same group, or copies of its runs in two
+  /// laboratories.
   int group = 0;
 };
-/// A new number for a group, or that of a group with the same runs in another laboratory.
+/// A new number for a group, or the number of the group with the same runs in another laboratory.
 int number_of(const Flaws& group, std::map<std::string, int>& known, int& num_groups);
 /// The flaws of each group of the runs, see group_runs(); the key is parameter_values().
 std::map<std::vector<Value>, Flaws> flaws_by_parameters(const std::vector<sweep::RunRow>& rows,
@@ -53,13 +55,13 @@ struct Comparison {
   fit::CloggingLength length_here{}, length_there{};
   Flaws flaws_here{}, flaws_there{};
   fit::LengthRatio ratio{};  ///< ratio of the length here to the length there
-  /// p-value of the log-rank test, which takes all runs as independent, and the same with Holm's correction
-  /// for all comparisons; NaN if not known.
+  /// p-value of the log-rank test, which treats all runs as independent; and this p-value with Holm's
+  /// correction for all comparisons. NaN if not known.
   double log_rank_p = sweep::RunRow::not_known, log_rank_p_holm = sweep::RunRow::not_known;
   int num_both_clogged = 0;  ///< pairs of runs that both clogged
   int num_same_place = 0;    ///< pairs of runs that both clogged, at the same place
-  /// All runs here and there ended alike at the same places, as copies of the same runs do. Their ratio is
-  /// exactly 1 and has no interval.
+  /// Whether all runs here and there had the same ends at the same places, as copies of runs have. The ratio
+  /// is then exactly 1 and has no interval.
   bool are_identical = false;
 };
 /// Groups of a side that no comparison with another side contains, because none of its groups matches them.
@@ -72,23 +74,23 @@ struct Comparisons {
   double confidence = 0;               ///< of the intervals
   std::vector<std::string> columns;    ///< listed columns with a value that both sides have; the values in
                                        ///< these columns name a comparison
-  std::vector<std::string> differing;  ///< columns whose values here and there differ
+  std::vector<std::string> differing;  ///< columns with different values here and there
   std::vector<Comparison> all;
   std::vector<LeftOut> left_out;
   std::string unit = "sigma";      ///< unit of lengths: "sigma" or "mm"
-  std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are wanted in mm, too
+  std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are also given in mm
   std::ptrdiff_t num_tests = 0;    ///< log-rank tests; copies of runs in several laboratories are one test
   double within = 0;  ///< clogs at most this far apart count as at the same place [sigma]; 0: half a spacing
 };
 
-/// Appends the groups of `side` that match no group of `other` to Comparisons::left_out, if there are any.
+/// Appends to Comparisons::left_out the groups of `side` that match no group of `other`, if there are any.
 /// @param labels  names of the values of a group
 void append_left_out(Comparisons& comparisons, const std::string& side, const std::string& other,
                      const std::vector<std::string>& labels, const std::vector<std::vector<Value>>& unmatched,
                      std::size_t number_of_all);
 
-/// Corrects the tests of all comparisons for their number (Holm): the doubt not_exponential of each group,
-/// and the log-rank tests.
+/// Corrects the tests of all comparisons for the number of tests (Holm). The tests are the log-rank tests,
+/// and the tests behind the doubt not_exponential of each group.
 void correct_tests(Comparisons& all);
 
 /// `column=value`, or `no column` for an unset value.
@@ -97,20 +99,20 @@ std::string named_value(const std::string& column, const Value& value);
 /// @throws Error if the side has no runs, or runs without a clogging length
 void require_lengths(const Side& side);
 
-/// The sides of a comparison of files; the first file is the reference. @throws Error as read_with_caution()
+/// Makes a side for each file; the first file is the reference. @throws Error as read_with_caution()
 std::vector<Side> sides_of_files(const std::vector<std::string>& paths);
-/// The sides of a comparison of a column's values, in the order of numbers or words: the first value is the
+/// Makes a side for each value of a column, in the order of numbers or words. The first value is the
 /// reference.
 /// @throws Error if there is no such column of parameters, or only one value
 std::vector<Side> sides_of_column(const std::string& name, const store::SweepFile& file);
 
-/// Compares each side with the first side. Parameter sets with the same values in Comparisons::columns are
-/// compared; their runs of the same seed form pairs.
+/// Compares each side with the first side. Parameter sets with equal values in Comparisons::columns are
+/// compared; their runs with equal seeds form pairs.
 /// @param sides  two or more
 /// @param within  see Comparisons; nullopt: half an obstacle spacing
-/// @param scales  units of the runs' laboratories. If there are several, and the two sides of each comparison
-/// have the same droplet, its diameter [mm] and tilt [degrees] name the comparison, in place of columns that
-/// follow from them, and lengths are in mm.
+/// @param scales  units of the runs' laboratories. If there are several laboratories, and the two sides of
+/// each comparison have the same droplet, lengths are in mm. The droplet's diameter [mm] and tilt [degrees]
+/// then name the comparison, in place of the columns that follow from them.
 /// @throws std::invalid_argument if there are fewer than two sides
 /// @throws Error if two sides have no value in common, or if it is not clear which parameter sets belong
 /// together

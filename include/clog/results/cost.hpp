@@ -32,17 +32,17 @@ struct SweepCost {
   double upper = 0;
 };
 
-/// Estimates the cost of a sweep from a sample of its runs, which is treated as random.
+/// Estimates the cost of a sweep from a sample of its runs. The sample is treated as random.
 ///
 /// The remaining time of unfinished runs is estimated from late ends only, because earlier ends say little
-/// about it. An end is late if its run has lasted at least half as long as the shortest unfinished run. The
-/// lower limit assumes that late ends are exponentially distributed. The upper limit assumes that they come
-/// from a mixture of short and long runs and become rarer with time. The estimate is the geometric mean of
-/// both limits.
+/// about it. The end of a run is late if the run has lasted at least half as long as the shortest unfinished
+/// run. The lower limit assumes that late ends are exponentially distributed. The upper limit assumes that
+/// the ends come from a mixture of short and long runs, and become rarer with time. The estimate is the
+/// geometric mean of both limits.
 ///
-/// If no run of a parameter set has ended, all its runs may last to max-time, which is the upper limit. For
-/// the estimate, every order of magnitude of the remaining time is then equally likely. The interval combines
-/// the error of each of these laws with the error of the sample.
+/// If no run of a parameter set has ended, the upper limit assumes that all its runs last to max-time. The
+/// estimate assumes that every order of magnitude of the remaining time is equally likely. The interval
+/// combines the error of each of these laws with the error of the sample.
 /// @param sample  not empty; at least one run has done work and taken time
 /// @param all_work  work of all runs of the sweep, if every run lasts to max-time
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs);

@@ -27,27 +27,28 @@ struct DistanceTable {
   double from = 0;  ///< the distance from which on the runs are counted, see counted_from()
 };
 
-/// The diameter of a group's droplets [mm]: the label `diameter`, which may be unknown; without this label,
-/// `sigma_mm`.
+/// The diameter of a group's droplets [mm]. It is the label `diameter`, which may be unknown, or `sigma_mm`
+/// if there is no such label.
 std::optional<double> diameter_of(const DistanceTable& table, const DistanceGroup& group,
                                   std::optional<double> sigma_mm);
 
-/// The table with distances that count from `from` on, in the table's unit; droplets that ended before are
-/// left out, and their number is printed (left truncation, see group_runs()).
+/// The table with distances counted from `from` on, in the table's unit. Droplets that ended before are
+/// excluded, and their number is printed (left truncation, see group_runs()).
 DistanceTable counted_from(double from, DistanceTable table);
 /// Splits a table into one table for each value of a label, in the order of the values.
 /// @throws Error if there is no such label, or only one value
 std::vector<DistanceTable> tables_of_values(const DistanceTable& table, const std::string& label);
-/// The runs of a sweep. Runs with the same values of all parameters that vary or are asked for form a group.
+/// The runs of a sweep. Runs form a group if they have equal values of all parameters that vary or are
+/// requested.
 /// @param scales  units of the laboratories, if any. If there are several, or if `diameter` or `angle` is
-/// asked for, distances are in mm, and the droplet's diameter [mm] and the tilt [degrees] separate groups, in
-/// place of parameters that follow from them.
+/// requested, distances are in mm. The droplet's diameter [mm] and the tilt [degrees] then separate groups,
+/// in place of the parameters that follow from them.
 /// @param asked  labels of the tables to compare with
 /// @throws Error as require_lengths()
 /// @param confidence  of the intervals to which the doubt of failures refers
 DistanceTable distances_of(const Side& side, const ScalesByLaboratory& scales,
                            const std::vector<std::string>& asked, double confidence);
-/// What may spoil the length of each group. Of measured distances only few_clogs, not_exponential and
+/// What may spoil the length of each group. For measured distances, only few_clogs, not_exponential and
 /// equal_distances are known.
 std::vector<Flaws> flaws_of(const DistanceTable& table);
 /// The name of a label as a column of a sweep.
@@ -63,9 +64,9 @@ std::string lengths_json(const DistanceTable& table, double confidence, std::opt
 /// Names of all results that these functions print beside the labels.
 std::vector<std::string> names_of_lengths();
 
-/// Compares each group of the other tables with each group of the first table that has the same values of the
-/// labels that both tables have. The runs are not paired. Where the tables' units differ, lengths are in the
-/// diameters of each group's own droplets (diameter_of()).
+/// Compares each group of the other tables with groups of the first table. Groups are compared if they have
+/// equal values of all labels that occur in both tables. The runs are not paired. If the tables have
+/// different units, lengths are in the diameters of each group's own droplets (diameter_of()).
 /// @throws Error if units differ and a diameter is unknown, or if no groups can be compared
 Comparisons compare_distances(const std::vector<DistanceTable>& tables, double confidence,
                               std::optional<double> sigma_mm);

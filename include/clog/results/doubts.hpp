@@ -34,11 +34,11 @@ struct DoubtText {
 inline constexpr DoubtText doubt_texts[] = {
     {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more droplets are needed"},
     {Doubt::not_exponential, 'x', "not_exponential",
-     "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
-     "not describe these runs"},
+     "P(r) is not exponential (p < 0.05, corrected by Holm's method for all groups with ten clogs or more): "
+     "one length does not describe these runs"},
     {Doubt::equal_distances, 'e', "equal_distances",
-     "half of the clogs or more are at the distance of another one: copies of a droplet count as independent "
-     "droplets, so the interval is too narrow (distances may also have been rounded coarsely)"},
+     "at least half of the clogs are at the distance of another clog: copies of a droplet count as "
+     "independent droplets, so the interval is too narrow (distances may also have been rounded coarsely)"},
     {Doubt::censored_by_time, 't', "censored_by_time",
      "runs ended by max-time: lambda is right only if slow droplets clog as often per distance as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
@@ -49,17 +49,17 @@ inline constexpr DoubtText doubt_texts[] = {
      "in a tenth of the clogs or more, the polygon's edges are so long that its corners may hold the droplet "
      "(corner pinning, column mesh_hold): use more vertices"},
     {Doubt::near_friction_limit, 'h', "near_friction_limit",
-     "more than 15 % of the clogs hold by almost all of the friction that there is (column friction_use): a "
-     "finer mesh could let these droplets go; compare with twice the vertices"},
+     "more than 15 % of the clogs use almost all of the available friction (column friction_use), so these "
+     "droplets might pass with a finer mesh; compare with twice the vertices"},
     {Doubt::wetted_mesh, 'w', "wetted_mesh",
      "the droplet wets walls (contact angle below 180 degrees): the mesh decides where some droplets clog; "
      "compare with twice the vertices"},
     {Doubt::array_repeats, 'r', "array_repeats",
-     "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
-     "again"},
+     "runs went farther than boxes times box, where the array repeats: obstacles that let a droplet pass "
+     "once let it pass again"},
     {Doubt::met_none, 'n', "met_none",
-     "droplets met no obstacle: lambda includes the way that they sank freely; lambda_met is that of the "
-     "others, from their first obstacle on"},
+     "droplets met no obstacle: lambda includes their paths; lambda_met is the length of the other droplets, "
+     "from their first obstacle on"},
     {Doubt::below_spacing, 'v', "below_spacing",
      "lambda is below one obstacle spacing (diameter + gap): it reflects the release void, not how often "
      "gaps clog droplets (for user-supplied circles the spacing is 1/sqrt(circles per area))"},
@@ -67,17 +67,17 @@ inline constexpr DoubtText doubt_texts[] = {
      "lambda would be below its interval if all failed runs had clogged where they failed"},
     {Doubt::untested, 'u', "untested",
      "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
-     "cross themselves or obstacles (handbook, Which droplets are sound)"}};
+     "cross themselves or obstacles (handbook, How far to trust it)"}};
 const DoubtText& text_of(Doubt doubt);
-/// The letters, the words with a space between them, and a legend: a blank line and a line for each different
-/// doubt, in the order of doubt_texts; empty without doubts.
+/// These functions return the letters, the words with a space between them, and a legend. The legend is a
+/// blank line and a line for each different doubt, in the order of doubt_texts; it is empty without doubts.
 std::string letters_of(const std::vector<Doubt>& doubts);
 std::string words_of(const std::vector<Doubt>& doubts);
 std::string legend_of(const std::vector<Doubt>& doubts);
 
-/// All doubts but Doubt::not_exponential, which needs all groups.
+/// All doubts except Doubt::not_exponential, which depends on all groups.
 std::vector<Doubt> doubts_about(const Group& group);
-/// Adds Doubt::not_exponential. The same runs in several laboratories are one test.
+/// Adds Doubt::not_exponential. Copies of runs in several laboratories count as one test.
 void doubt_exponentiality(std::vector<Group>& groups);
 
 }  // namespace clog::results

@@ -11,9 +11,9 @@
 
 namespace clog::results {
 
-/// Finds the events of a sweep by reading its file repeatedly. There is a line of JSON for every start, end
-/// and interruption of a task, for every new attempt, and for every round. A task that starts and ends
-/// between two reads gets both lines.
+/// Finds the events of a sweep by reading its file repeatedly. An event is one line of JSON: a start, an end
+/// or an interruption of a task, a new attempt, or a new round. A task that starts and ends between two reads
+/// gets two lines.
 class Events {
  public:
   /// @param path  of the file, for messages

@@ -9,8 +9,8 @@
 
 namespace clog::results {
 
-/// Selects which parameters that are equal in all groups are named above the table: all of them, or only
-/// those with an unusual value.
+/// Some parameters are equal in all groups. This selects those that are named above the table: all, or only
+/// parameters with an unusual value.
 enum class SharedParameters { unusual, all };
 
 /// A printed table: one line per group, with the parameters in which groups differ. If groups have a

@@ -16,6 +16,7 @@
 #include "clog/fit/migration.hpp"
 #include "clog/fit/survival.hpp"
 #include "clog/results/doubts.hpp"
+#include "clog/results/families.hpp"
 #include "clog/sweep/columns.hpp"
 
 namespace clog::results {
@@ -25,8 +26,8 @@ inline constexpr int enough_clogs = 5;  ///< with fewer clogs, the interval is w
 /// The competing ways in which a run may end: the mechanism that holds a clog (`other`: none of the three),
 /// or the break-up of the droplet.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// Names of two columns: the number of runs that the cause ended, and the length (total distance divided by
-/// this number).
+/// Names of two columns: the number of runs that the cause ended, and the total distance of all runs divided
+/// by this number.
 struct CauseText {
   Cause cause;
   bool is_clog;
@@ -45,8 +46,8 @@ struct LaboratoryScale {
   double speed = std::numeric_limits<double>::quiet_NaN();   ///< v_t [mm/s]
   /// Interfacial tension of a droplet with Gamma = 1 [mN/m].
   double tension = std::numeric_limits<double>::quiet_NaN();
-  /// Gamma of the laboratory's droplet, rounded as its runs have it, and its interfacial tension before it
-  /// was rounded [mN/m].
+  /// Gamma of the laboratory's droplet, rounded as in its runs. `own_tension` is the droplet's interfacial
+  /// tension, not rounded [mN/m].
   double line_tension = std::numeric_limits<double>::quiet_NaN();
   double own_tension = std::numeric_limits<double>::quiet_NaN();
   double tilt = std::numeric_limits<double>::quiet_NaN();  ///< tilt of the plates [degrees]
@@ -63,7 +64,7 @@ struct Passage {
 /// The runs of a sweep that differ in their seed only, and their results.
 struct Group {
   sweep::RunRow first_row;  ///< parameters of all runs, except the seed
-  /// A rest that is longer than this counts as a clog, see group_runs() [t0].
+  /// A rest longer than this counts as a clog, see group_runs() [t0].
   double dwell = std::numeric_limits<double>::infinity();
   /// The latest Dwells::known_from of all runs; NaN if the dwells of a run are unknown [t0]
   double dwells_known_from = 0;
@@ -86,14 +87,14 @@ struct Group {
     std::vector<fit::IncidenceStep> incidence;  ///< steps of F_c; empty without a clogging length
   };
   std::vector<EndsBy> causes;
-  fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
-  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, total distance divided by total time of the runs
+  fit::MeanSpeed relative_speed;         ///< mean of v_g/v_t over the runs
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, as total distance divided by total time of these runs
   /// v_g/v_t, total distance divided by total time of all runs, even of those with a short distance. A run
   /// counts until its end, a clogged run until its last dwell began. This speed is not biased towards fast
-  /// runs: if droplets clog, only the faster ones go far enough to have a mean speed of their own.
+  /// runs. The mean over runs is: if droplets clog, only the faster ones go far enough to have a mean speed.
   fit::MeanSpeed relative_speed_all;
-  /// v_g/v_t, total distance divided by total time of all runs from a fixed time on (SteadyRecord); a clogged
-  /// run counts until its last dwell began. Nothing is chosen from the data.
+  /// v_g/v_t, total distance divided by total time of all runs from a fixed time on (SteadyRecord). A clogged
+  /// run counts until its last dwell began. No choice in this speed depends on the data.
   fit::MeanSpeed relative_speed_steady;
   fit::Migration migration;
   /// Tilt of the rows of posts from the flow towards +y, given by a lattice or by --row-angle; NaN: unknown
@@ -101,38 +102,40 @@ struct Group {
   double row_angle = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::uint32_t> seeds;    ///< seeds of the runs that count for the clogging length
   std::vector<fit::Observation> runs;  ///< outcomes of these runs, in the same order
-  int num_passed = 0;                  ///< runs whose droplet reached the exit of the device
+  int num_passed = 0;                  ///< runs with a droplet that reached the exit of the device
   int num_flowing = 0;                 ///< runs that max-time ended
-  /// Number of those flowing runs whose droplet, at the end, had rested for longer than a free droplet takes
-  /// to fall ten diameters; the next member is the shortest such rest [t0].
+  /// Number of runs in num_flowing whose droplet, at the end, had rested for longer than a free droplet takes
+  /// to fall ten diameters. The next member is the shortest of these rests [t0].
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
-  int num_repeated = 0;          ///< runs left out because a longer run of the same droplet counts (pooled)
-  int num_failed = 0;            ///< failed runs; those that count for the clogging length are censored
-  int num_failed_counted = 0;    ///< those that count for the clogging length
-  int num_failed_somewhere = 0;  ///< those at an unknown distance, left out of all fits
-  int num_damaged = 0;           ///< damaged runs, left out of all fits
-  /// Runs that ended before distances are counted (see group_runs()), left out of all fits.
+  int num_repeated = 0;  ///< runs that are excluded because a longer run of the same droplet counts (pooled)
+  int num_failed = 0;    ///< failed runs; those that count for the clogging length are censored
+  int num_failed_counted = 0;    ///< failed runs that count for the clogging length
+  int num_failed_somewhere = 0;  ///< failed runs at an unknown distance, excluded from all fits
+  int num_damaged = 0;           ///< damaged runs, excluded from all fits
+  /// Runs that ended before the distance from which runs count (see group_runs()). They are excluded from all
+  /// fits.
   int num_left_out = 0;
   int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
-  int num_stability_unknown = 0;    ///< clogs whose stability is unknown (column stability)
+  int num_stability_unknown = 0;    ///< clogs with unknown stability (column stability)
   int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
-  /// Whether half of the clogs or more are as far as another one. If no run clogged, this concerns the runs
-  /// that met an obstacle.
+  /// Whether at least half of the clogs have the distance of another clog. If no run clogged, the distances
+  /// of the runs that met an obstacle are compared.
   bool are_runs_equal = false;
   int num_free = 0;  ///< runs that met no obstacle
-  /// The x of the droplets of a device that were released beside their place on the entrance [sigma].
+  /// The x of those droplets of a device that were released away from their place on the entrance [sigma].
   std::vector<double> displaced;
   int num_repeating = 0;  ///< runs that went farther than their array's period
   /// Passages through a device, in downstream order; the last one is the exit.
   std::vector<Passage> passages;
+  Families families;  ///< with break-up=daughters, of the runs that are over
   std::vector<Doubt> doubts;
   std::optional<LaboratoryScale> laboratory = {};  ///< units in which results are also given
 };
 
-/// Terminal speed of the group's runs [mm/s], which may differ from that of the laboratory's droplet; NaN if
-/// the laboratory does not know the latter.
+/// Terminal speed of the group's runs [mm/s]. The laboratory's droplet may have another terminal speed. NaN
+/// if the laboratory does not specify a speed.
 double terminal_speed_in_laboratory(const Group& group);
 
 /// Number of failures divided by the distance of the runs that count for the clogging length; NaN if they
@@ -145,20 +148,20 @@ bool is_device(const RunParameters& run);
 bool is_observed(const sweep::RunRow& run);
 
 /// The outcome of a run that is_observed(). A failed run is censored at its sound distance. The distance
-/// counts from the release, but in a device from the first obstacle that the droplet met. There the outcome
+/// counts from the release. In a device it counts from the first obstacle that the droplet met; the outcome
 /// is nullopt if the droplet met no obstacle.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
 /// Groups rows by all parameters except the seed. The groups are in the order of their findings, then of
 /// their parameters. Runs count as in observation_of().
-/// @param from_distance  the distance from which on runs are observed [sigma]: runs that ended earlier are
-/// excluded, and the others count with their distance beyond it (left truncation)
-/// @param dwell  a droplet that rested for longer than this counts as clogged where it first did so [t0]. A
-/// droplet that has neither rested so long nor clogged is censored where its last dwell began, because the
-/// full length of that dwell is unknown. A `dwell` of max-time or more has no effect.
-/// @param pooled  columns of max-time and boxes that do not separate groups. Of the runs of one seed in the
-/// same array the one with the largest max-time counts; with different `boxes` the same seed gives different
-/// arrays, so both runs count.
+/// @param from_distance  the distance from which on runs are observed [sigma]. Runs that ended earlier are
+/// excluded; the others count with their distance beyond it (left truncation).
+/// @param dwell  a droplet that rested for longer than this counts as clogged at the place of its first such
+/// rest [t0]. A droplet that neither clogged nor rested so long is censored where its last dwell began,
+/// because the full length of that dwell is unknown. A `dwell` of max-time or more has no effect.
+/// @param pooled  columns of max-time and boxes that do not separate groups. If several runs have equal seeds
+/// and arrays, only the run with the largest max-time counts. Runs with different `boxes` all count, because
+/// equal seeds then give different arrays.
 /// @param lines  x of the passages in devices; by default those of the rows of posts [sigma]
 /// @throws Error if the rows do not record which droplets rested for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
@@ -169,9 +172,9 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
 /// The columns of a list of keys, which may be max-time, boxes or both: `max-time,boxes`. @throws Error for
 /// any other key
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
-/// Lateral displacement divided by the lateral displacement of a droplet that follows the rows. In
-/// deterministic lateral displacement, this ratio is 0 in the zigzag mode and 1 in the displacement (bump)
-/// mode. NaN for rows along the flow.
+/// Lateral displacement divided by that of a droplet that follows the rows. In deterministic lateral
+/// displacement, this ratio is 0 in the zigzag mode and 1 in the displacement (bump) mode. NaN for rows along
+/// the flow.
 fit::Migration share_along_rows(const Group& group);
 /// Whether a run of this group can last longer than Group::dwell.
 bool is_dwell_possible(const Group& group);
@@ -185,18 +188,19 @@ struct Field {
   std::string head = {};                 ///< of the printed column
   std::optional<std::string> text = {};  ///< printed in place of the value
 };
-/// Columns that define a group: all parameters except the seed. Physical parameters come first, and the first
-/// of these are the parameters that shape the array.
+/// Columns that define a group: all parameters except the seed. Physical parameters come first; the first of
+/// these are the parameters that shape the array.
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
 std::vector<Value> parameter_values(const sweep::RunRow& row);
-/// Text that is the same for the runs of a parameter set and for their copies in other laboratories.
+/// Text that identifies the runs of a parameter set. Copies of the runs in other laboratories have the same
+/// text.
 /// @param row  of one of the runs
 std::string runs_of(sweep::RunRow row);
 /// The kind of the group's results.
 Finding finding_of(const Group& group);
-/// Whether the results include a clogging length. They do not in a channel and on a wall, where nothing is
-/// random: there each group is one run, whose row has the results.
+/// Whether the results include a clogging length. There is none in a channel or on a wall, where nothing is
+/// random. There each group is one run, and its row has the results.
 bool has_clogging_length(const sweep::RunRow& row);
 inline constexpr const char* outcome_at_rest = "at rest";
 /// How a run ended: the status in words. A droplet that stops on a bare wall is at rest, not clogged.

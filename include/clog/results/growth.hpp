@@ -8,8 +8,8 @@
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
 
-/// A sweep may grow along physical parameters that are numbers, and in seeds. All other keys are fixed: for
-/// each of them, a file and the sweep that resumes it must share a value.
+/// A sweep may grow along numerical physical parameters, and in seeds. All other keys are fixed: a file and
+/// the sweep that resumes it must have a common value of each.
 namespace clog::results {
 
 /// Names the fixed keys for which two sweeps have no value in common; empty if one sweep may continue the
@@ -23,8 +23,8 @@ class FixedValues {
  public:
   FixedValues(const sweep::Plan& plan, sweep::Settings settings);
 
-  /// Names the fixed keys whose value in this row occurs in no task of the plan, or the model version, if the
-  /// row has another one.
+  /// Names the fixed keys with a value in this row that occurs in no task of the plan. Also names the model
+  /// version if it differs.
   std::string differing_keys(const sweep::RunRow& row) const;
 
  private:

@@ -11,35 +11,36 @@
 
 namespace clog::results {
 
-/// Rows of several files as one sweep. A run that several files have is included once. A result is preferred
-/// to a failure that every attempt would repeat, such a failure to an unfinished row, and an unfinished row
-/// to a crash; of two rows of the same kind, the one with more steps is kept. Of results that differ by
-/// instruction set, those of the first file are kept.
+/// Rows of several files as one sweep. A run that several files have is included once. The row to keep is
+/// chosen in this order: a result, a failure that every attempt would repeat, an unfinished row, a crash. Of
+/// two rows of the same kind, the one with more steps is kept. If results differ because of the instruction
+/// set, those of the first file are kept.
 struct MergedSweep {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< snapshots of unfinished runs
   std::int64_t num_shared = 0;                   ///< runs that several files have
-  std::int64_t num_differing = 0;                ///< shared runs whose results differ by instruction set
+  std::int64_t num_differing = 0;                ///< shared runs with results that differ by instruction set
   std::int64_t num_faulty = 0;  ///< rows that are excluded because they are physically impossible
-  /// Numerical keys in which the files differ, if no parameter set is in two of them.
+  /// Numerical keys with different values in the files, if no parameter set is in two of them.
   std::set<std::string> differing_numerics;
 };
 
-/// Merges complete or stopped sweeps, to be written to a new file.
+/// Merges complete or stopped sweeps, for a new file.
 /// @param maker  provenance of the program that makes the new file, from cli::origin()
 /// @throws Error that names the files and the task, if two rows of a run contradict each other, if a file is
 /// damaged or being written, or if two files have different circles under the same name
 MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker);
 
-/// Reads the rows of several files together, also of running sweeps and of files whose config is unreadable.
-/// A single file is returned as it is.
+/// Reads the rows of several files together, also of running sweeps and of files with an unreadable config. A
+/// single file is returned unchanged.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
-/// Gives each task the number that it has in the settings of the runs, and circles the names that they have
-/// there. Rows of runs outside these settings follow at the end. Returns the settings as a config.
+/// Changes the number of each task to its number in the settings of the runs, and the names of circles to
+/// those in the settings. Rows of runs outside these settings follow at the end. Returns the settings as a
+/// config.
 std::string number_tasks(const RunList& runs, store::SweepFile& table);
 
-/// Provenance of a file that is made from rows of other files.
+/// Provenance of a file that contains rows of other files.
 /// @param maker  provenance of the program that makes the file, from cli::origin()
 /// @param config  of the new file
 /// @param parts  a line for each part, see part_line()

@@ -8,8 +8,8 @@
 
 namespace clog::results {
 
-/// Droplets of several groups that are mixed in given shares, such as droplets of several sizes. The unit of
-/// its distances is mm if the groups have different laboratories, otherwise sigma.
+/// A mixture of droplets of several groups in given shares, such as droplets of several sizes. Distances are
+/// in mm if the groups have different laboratories, otherwise in sigma.
 struct Mixture {
   struct Part {
     std::string value;  ///< value of `column` in the group, e.g. "2.8 mm"
@@ -20,7 +20,7 @@ struct Mixture {
     double probability;  ///< P just beyond this distance
     fit::Interval interval;
   };
-  std::string column;  ///< `diameter`, or the parameter that tells the groups apart
+  std::string column;  ///< `diameter`, or the parameter that distinguishes the groups
   std::vector<Part> parts;
   std::string unit;
   double length = 0;         ///< NaN without clogs
@@ -32,9 +32,9 @@ struct Mixture {
 };
 
 /// The clogging length and the survival curve of a mixture. Each group's distance and number of clogs per run
-/// count with the group's share. Intervals are percentiles of 2000 bootstrap resamples of seeds. Runs of one
-/// seed stay together, and each resample has as many seeds of each set of groups as the sweep, so it makes no
-/// difference whether groups share seeds.
+/// count with the group's share. Intervals are percentiles of 2000 bootstrap resamples of seeds. Runs with
+/// the same seed stay together. For each set of groups, a resample has the same number of seeds as the sweep.
+/// So the result does not depend on whether groups share seeds.
 /// @param text  a column and the weights of its values: `diameter=2.8mm:0.3,3.2mm:0.7`
 /// @param groups  from group_runs(), not empty
 /// @throws Error if the text has another form, or if not exactly one group has each of these values

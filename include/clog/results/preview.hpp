@@ -21,8 +21,8 @@ void print_tasks(const sweep::Plan& plan, PreviewFormat format);
 void print_refusal(const Refusal& refusal);
 /// Prints known limits of the results, such as an array that repeats. Then prints an upper bound of the
 /// sweep's duration, for which every run lasts to max-time, and an estimate (sweep_cost()). The estimate uses
-/// the runs in `output` or, if these are few, short trial runs. Then prints the finished and the remaining
-/// part of the sweep in `output`. Returns the exit code: a failure if no run can begin.
+/// the runs in `output`. If these are few, it uses short trial runs. Then prints the finished and the
+/// remaining part of the sweep in `output`. Returns the exit code: a failure if no run can begin.
 /// @param output  the sweep's file, which need not exist; empty: no file
 /// @param rule  if not null, `plan` is the first round, and the cost of further rounds is printed, too
 /// @param jobs  makes the jobs of the trial runs

@@ -17,8 +17,8 @@ namespace clog::results {
 
 /// The number of runs with an outcome, see outcome_of().
 std::int64_t count_in(const std::map<std::string, std::int64_t>& by_outcome, const std::string& outcome);
-/// The number of clogged droplets and of those at rest on a wall. Only numbers above 0 are named, and one at
-/// least. @param by_outcome  see outcome_of()
+/// The number of clogged droplets and the number of droplets at rest on a wall. Only numbers above 0 are
+/// named, but at least one number. @param by_outcome  see outcome_of()
 std::string text_of_clogs(const std::map<std::string, std::int64_t>& by_outcome);
 
 /// Reports the progress of a sweep on a StatusLine.
@@ -30,7 +30,7 @@ class Progress {
   Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of);
 
   /// Adds tasks to the total against which progress is measured.
-  /// @param num_wanted  number of runs of the whole sweep; those that are not in `tasks` were done before
+  /// @param num_wanted  number of runs of the whole sweep; runs that are not in `tasks` were done before
   void expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted);
 
   void started(std::int64_t task);
@@ -41,7 +41,7 @@ class Progress {
   void not_ended(const sweep::RunRow& failed);
   /// Prints a permanent line, on any screen.
   void say(const std::string& text) { status_.say(text); }
-  /// Renews the line if it is due.
+  /// Redraws the line if it is due.
   void tick();
   void finish();
 
@@ -50,7 +50,7 @@ class Progress {
 
   console::StatusLine status_;
   sweep::GroupOf number_of_set_;
-  std::vector<SetTimes> sets_;  // running tasks, which are in running_, count as waiting here
+  std::vector<SetTimes> sets_;  // tasks in running_ count as waiting here
   std::int64_t num_tasks_ = 0;
   std::int64_t num_before_ = 0;
   int num_ranks_;

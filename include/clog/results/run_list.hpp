@@ -18,16 +18,16 @@ class RunList {
  public:
   /// Adds all runs of a plan. @throws Error if another plan has other circles under the same name
   void add(const sweep::Plan& plan);
-  /// Adds runs that may be outside the plan, for instance those of an earlier command of the sweep. The texts
-  /// of such a run are those of the plan's first parameter set, except where the row has other values. Prints
-  /// how many runs these texts do not describe. @throws Error as add()
+  /// Adds runs that may be outside the plan, for instance runs of an earlier command of the sweep. Such a run
+  /// has the texts of the plan's first parameter set, except where its row has other values. Prints the
+  /// number of runs that these texts do not describe. @throws Error as add()
   /// @param path  of the file that contains the rows
   void add_rows(const std::string& path, const sweep::Plan& plan, const std::vector<sweep::RunRow>& rows);
 
-  /// Adds the seed of a run whose parameter set is known. Returns whether it is.
+  /// Adds the seed of a run if its parameter set is known. Returns whether it is.
   bool add_seed(const sweep::RunRow& row);
-  /// Gives every parameter set the smallest unused seeds until it has `number` seeds, unless nothing in it is
-  /// random.
+  /// Adds the smallest unused seeds to every parameter set until it has `number` seeds. Sets without anything
+  /// random are not changed.
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }

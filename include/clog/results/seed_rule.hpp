@@ -11,9 +11,9 @@
 
 namespace clog::results {
 
-/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough. Each
-/// round is determined when the previous one has ended, from the number of clogs alone. So the runs of a
-/// sweep depend neither on the ranks nor on interruptions, and lambda stays unbiased: stopping at a number of
+/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough. When
+/// a round has ended, the number of clogs alone determines the next round. So the runs of a sweep depend
+/// neither on the ranks nor on interruptions. The estimate of lambda stays unbiased: stopping at a number of
 /// clogs is inverse sampling, in which the relative width of the interval depends only on this number.
 class SeedRule {
  public:
@@ -22,10 +22,10 @@ class SeedRule {
   /// of seeds
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
-  /// Call this when all tasks so far are over. Returns the tasks of the next round; none at the end. Task s
-  /// num_groups + g is the s-th seed of parameter set g. A set that is not precise enough gets as many more
-  /// seeds as its fraction of clogs so far requires, but at most as many as it already has. A set whose runs
-  /// have all failed gets no more.
+  /// Call this when all tasks so far are over. Returns the tasks of the next round; none at the end. Task s *
+  /// num_groups + g is the s-th seed of parameter set g. A set that is not precise enough gets as many
+  /// further seeds as its fraction of clogs so far requires, but at most as many as it already has. A set in
+  /// which all runs have failed gets no more.
   /// @param status  how a task ended
   std::vector<std::int64_t> next_round(const std::function<RunStatus(std::int64_t task)>& status);
 
@@ -56,8 +56,8 @@ class SeedRule {
 /// precision, and a remedy. If all sets reached the precision, it gives the number of sets.
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
 
-/// A sweep that a rule may enlarge. Its settings have all seeds that the rule may use; the given ones come
-/// first.
+/// A sweep that a rule may enlarge. Its settings have all seeds that the rule may use, beginning with the
+/// given seeds.
 struct GrowingSweep {
   sweep::Settings settings;
   std::int64_t num_first = 0;  ///< tasks to begin with

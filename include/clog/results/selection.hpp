@@ -10,8 +10,8 @@
 
 namespace clog::results {
 
-/// End of a message that there is no column of this name. @param meant  the column that may be meant, or
-/// empty
+/// End of a message about a column that does not exist.
+/// @param meant  the column that the user may mean, or empty
 std::string hint_at_column(const std::string& name, const std::string& meant);
 
 /// A condition on a column: `line_tension>=0.5`, `status=clogged,broken`, `preset!=robust`.
@@ -24,8 +24,8 @@ class Condition {
   /// A row without a value in the column satisfies no condition.
   bool holds(const sweep::RunRow& row) const;
 
-  /// A misspelt word equals no row's value, so it would select no row, or with != all rows. @throws Error if
-  /// no row has one of the words
+  /// A misspelt word would select no row, or all rows with the relation !=, because it equals no row's value.
+  /// @throws Error if no row has one of the words
   void require_known_words(std::span<const sweep::RunRow> rows) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace clog::results {
 
-/// These functions read the description of a sweep that a file contains besides the rows.
+/// These functions read the description of a sweep from its file, which also contains the rows.
 
 /// Opens a sweep for reading; warns on stderr about anything that could not be verified. Rows have their
 /// circles, with the name of their file. @throws Error as store::read_sweep()
@@ -29,8 +29,8 @@ void set_attribute(store::Provenance& provenance, const std::string& name, const
 /// stored_plan()
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
 sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
-/// Columns of those keys for which the sweep's config has a list; empty, with a warning on stderr, if the
-/// config cannot be read.
+/// Columns of the keys that have a list in the sweep's config. Empty, with a warning on stderr, if the config
+/// cannot be read.
 std::vector<std::string> listed_columns(const store::Provenance& provenance);
 /// Number of runs requested so far: with --until-precision the runs of the rounds so far, otherwise all runs
 /// of the plan.

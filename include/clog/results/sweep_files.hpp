@@ -17,7 +17,7 @@
 namespace clog::results {
 
 /// The files of a sweep while it runs: the table, which another thread publishes from time to time, and the
-/// journal beside it, which contains later results and the snapshots of running tasks.
+/// journal beside it. The journal contains later results and the snapshots of running tasks.
 class SweepFiles {
  public:
   using Entry = SweepRuns::Entry;

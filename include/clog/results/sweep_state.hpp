@@ -12,8 +12,8 @@
 
 namespace clog::results {
 
-/// The state of a sweep's runs, on rank 0 and in the files from which a stopped or killed sweep resumes. A
-/// run is identified by its parameters and seed (sweep::identity), not by its task number.
+/// The state of a sweep's runs, on rank 0 and in the files from which a stopped or killed sweep resumes.
+/// Parameters and seed identify a run (sweep::identity); its task number does not.
 class SweepState {
  public:
   /// Reads the files, and checks that they belong to this sweep.
@@ -58,13 +58,13 @@ class SweepState {
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.by_task.at(task)->row; }
-  /// If all runs that have begun have failed, the first of them, otherwise nullptr.
+  /// The first run that has begun, if all runs that have begun have failed; otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;
   /// Discards a failure, so that the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return runs_.tries_again(failed); }
-  /// Call this often: it starts to publish the table if that is due, or detects that a publication has ended,
-  /// and never waits for the disk.
+  /// Call this often. It starts to publish the table if that is due, or detects that a publication has ended.
+  /// It never waits for the disk.
   void tick() { files_.tick(); }
   bool is_publishing() const { return files_.is_publishing(); }
   /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.

@@ -11,12 +11,9 @@ namespace clog::results {
 /// row's parameters are impossible.
 std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
-/// Whether the row's value in this column is the one that `auto` gives for the row's other parameters, or the
-/// one that the row's preset sets.
+/// Whether `auto`, with the row's other parameters, or the row's preset would give the row's value in this
+/// column.
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
-
-/// Whether the run has a value in this column. Runs lack parameters of the other model, or of other layouts.
-bool has_parameter(const sweep::Column& column, const RunParameters& run);
 
 /// The value by which a column separates curves and comparisons. It is unset if the row's value is automatic
 /// or follows from the array. For springs to the rest length, it is the ratio K_l/Gamma of

@@ -12,7 +12,7 @@ namespace clog::scheduler {
 struct Assignment {
   std::chrono::milliseconds report_interval{10'000};
   std::string instruction_set = "auto";
-  bool is_isolated = true;  ///< whether tasks run in processes of their own
+  bool is_isolated = true;  ///< whether tasks run in separate processes
   std::string settings;     ///< see sweep::Settings::packed()
 
   /// Serialised form, for messages.

@@ -34,7 +34,7 @@ class Communicator {
   /// Collective: rank 0 returns every rank's text, in the order of ranks; the other ranks return an empty
   /// list.
   std::vector<std::string> gather(const std::string& text) const;
-  /// Collective: returns when all ranks have called it, sleeping meanwhile (MPI's own barrier spins).
+  /// Collective: returns when all ranks have called it. It sleeps while it waits (MPI's own barrier spins).
   void wait_for_all() const;
 
   struct Envelope {
@@ -50,7 +50,7 @@ class Communicator {
   /// Receives the message that probe() found.
   std::vector<std::byte> receive(const Envelope& envelope) const;
 
-  /// Ends all ranks at once, for errors after which they could only wait for each other.
+  /// Ends all ranks at once. For errors after which the ranks could only wait for each other.
   [[noreturn]] void abort(int exit_code) const;
 
  private:

@@ -10,13 +10,13 @@
 
 namespace clog::scheduler {
 
-/// Jobs in a separate process, so that a crash ends a task and not the sweep. The task is then `failed`, with
-/// the signal or exit code as its message, and the next task gets a new process.
+/// Jobs in a separate process, so that a crash ends only a task and not the sweep. The task is then `failed`,
+/// its message is the signal or exit code, and the next task gets a new process.
 ///
 /// A process serves one task after the other, and keeps its obstacle array, until it crashes. The rank does
-/// not fork it. Instead, a helper does so, which was forked before MPI started, so no computing process has
-/// MPI, its threads, its registered memory, or an open file of the sweep. The helper and the computing
-/// process die with the rank.
+/// not fork the process itself. A helper forks it, and this helper was forked before MPI started. So no
+/// computing process has MPI, its threads, its registered memory, or an open file of the sweep. The helper
+/// and the computing process end with the rank.
 ///
 /// A rank never waits for these processes: a process that hangs blocks only its own task, and delays a stop
 /// by two seconds. If the helper dies, the present task is `failed`, and the rank computes further tasks

@@ -11,8 +11,8 @@
 namespace clog::scheduler {
 
 /// Decides whether a failed task or its machine is at fault. A machine is a host; if all ranks are on one
-/// host, a machine is a rank. A task's result depends on no machine, so the test is to try the task on other
-/// machines:
+/// host, a machine is a rank. A task's result does not depend on the machine, so other machines can test the
+/// task:
 ///
 /// - A failure counts against its machine until the machine succeeds with another task, or until the task
 ///   also fails on a trusted machine. A machine is trusted if it has succeeded and is not on hold.
@@ -36,9 +36,9 @@ class MachineTrust {
   /// Records that a task succeeded, or failed. Returns the machines that are suspect as a result.
   std::vector<Suspect> succeeded(std::int64_t task, int rank);
   std::optional<Suspect> failed(std::int64_t task, int rank, const std::string& message);
-  /// Call this when no machine can decide whether a machine or a task is at fault. Releases all machines on
-  /// hold.
-  void let_go();
+  /// Call this when no machine can decide whether a machine or a task is at fault. Machines on hold get tasks
+  /// again.
+  void end_holds();
 
   int num_in_service() const { return num_in_service_; }
   bool may_work(int rank) const { return may_work(machines_.at(name_of(rank))); }
@@ -50,14 +50,14 @@ class MachineTrust {
   struct Machine {
     bool in_service = true;
     bool has_succeeded = false;
-    std::set<std::int64_t> failures;  // tasks whose failures count against the machine
+    std::set<std::int64_t> failures;  // tasks with failures that count against the machine
     std::string message;              // message of the last failure
   };
   static constexpr std::size_t most_failures = 3;
 
   std::vector<std::string> machine_of_;      // names of machines, by rank
   std::map<std::string, Machine> machines_;  // by name
-  // The machines on which a task failed, by task until it succeeds.
+  // The machines on which a task has failed, by task; a success of the task removes its entry.
   std::unordered_map<std::int64_t, std::set<std::string>> failed_on_;
   int num_in_service_;
   bool has_let_go_ = false;

@@ -30,8 +30,8 @@ struct SweepEvents {
   std::function<void(const Report&)> ended = [](const Report&) {};
   /// Whether a task that ended as `failed` should be tried again.
   std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
-  /// Called for a task that `failed` when this machine may be at fault (see MachineTrust): the attempt does
-  /// not count, and the task is tried once more whatever tries_again() returned.
+  /// Called for a task that `failed` if this machine may be at fault (see MachineTrust). The attempt does not
+  /// count, and the task is tried once more whatever tries_again() returned.
   std::function<void(std::int64_t task, const std::string& machine)> failure_withdrawn =
       [](std::int64_t, const std::string&) {};
   /// Called when a machine is set aside: it is at fault for its failures and gets no more tasks.
@@ -48,8 +48,8 @@ struct SweepEvents {
 /// little, and its slices delay the next task of every worker.
 bool computes(int num_ranks, MasterComputes choice);
 
-/// Rank 0's state of a sweep's tasks and machines, kept over all rounds: machines that were set aside stay
-/// set aside, and measured run times remain in use.
+/// Rank 0's state of a sweep's tasks and machines. It is kept for all rounds: machines that were set aside
+/// stay set aside, and measured run times remain in use.
 struct Schedule {
   /// @param first  tasks of the first round
   /// @param hosts  hosts of all ranks, by rank; on ranks other than 0, an empty list
@@ -68,12 +68,12 @@ enum class SweepEnd {
 
 /// Works through all tasks of a round with all ranks; every rank must call this.
 ///
-/// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
-/// Rows do not depend on the order of the tasks. A task that failed is tried again on another machine, if
-/// there is one, before new tasks start. A machine on which everything fails is set aside: see MachineTrust.
-/// If rank 0 computes, it does so in slices between two polls for messages. No rank spins: an idle rank
-/// sleeps, with a backoff of up to a few milliseconds. A stopped task has two seconds to report its progress;
-/// otherwise its previous report is used.
+/// Rank 0 hands out one task at a time, because the lengths of tasks differ by a factor of a thousand, and
+/// gathers the rows. Rows do not depend on the order of the tasks. A task that failed is tried again on
+/// another machine, if there is one, before new tasks start. A machine on which all tasks fail is set aside:
+/// see MachineTrust. If rank 0 computes, it does so in slices between two polls for messages. No rank spins:
+/// an idle rank sleeps, with a backoff of up to a few milliseconds. A stopped task has two seconds to report
+/// its progress; after this time its previous report is used.
 /// @param schedule  used on rank 0 only
 /// @param make_job  called on the rank that works on the task
 /// @param report_interval  time between two reports of a running task

@@ -11,8 +11,8 @@
 
 namespace clog::scheduler {
 
-/// Chooses the task to hand out next: the task expected to run longest, so that at the end ranks do not idle
-/// while a long task finishes.
+/// Chooses the next task: the one that is expected to run longest. So ranks do not idle at the end while a
+/// long task finishes.
 ///
 /// The tasks of a group differ in their seed only, and are handed out in order. A group's expected run time
 /// is results::SetTimes::mean_seconds(). Tasks of a group without an ended task are expected to run longer
@@ -35,8 +35,8 @@ class TaskOrder {
   void begun_again(std::int64_t task, double now);
 
  private:
-  /// Priority of a group; the group with the smallest is next. It contains minus the expected run time, the
-  /// number of tasks handed out, and the number of the group.
+  /// Priority of a group; the group with the smallest is next. It contains, in this order: minus the expected
+  /// run time, the number of tasks handed out, the number of the group.
   using Turn = std::tuple<double, std::int64_t, std::size_t>;
   struct Group {
     std::vector<std::int64_t> tasks;

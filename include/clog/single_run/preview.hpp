@@ -4,7 +4,7 @@
 
 namespace clog::single_run {
 
-/// Upper bound of the cost of runs, for the case that none ends before max-time.
+/// Upper bound of the cost of runs, which assumes that none ends before max-time.
 struct MostCost {
   double time = 0;  ///< [t0]
   double steps = 0;

@@ -22,21 +22,21 @@ class Draft;
 std::string journal_path(const std::string& table);
 OutputPath journal_place(const OutputPath& table);
 
-/// The records of a sweep since its table was last published, appended to a file beside the table: finished
-/// rows, and rows of running tasks with their snapshots. A record survives the death of the process once
-/// add() has returned, and a crash of the machine once flush() has returned. An incomplete record at the end
-/// of the file is ignored; a damaged record does not make others unreadable.
+/// The records of a sweep since its table was last published, appended to a file beside the table. They are
+/// finished rows, and rows of running tasks with their snapshots. When add() has returned, a record survives
+/// the death of the process; when flush() has returned, it survives a crash of the machine. An incomplete
+/// record at the end of the file is ignored. A damaged record does not make others unreadable.
 ///
 /// An open journal is locked; the lock disappears with its process. If somebody removes or replaces the file,
-/// the lock no longer protects it. The journal then writes nothing more, neither to this file nor to the file
-/// that took its place. Closing a journal without records removes its file.
+/// the lock protects nothing. The journal then writes neither to this file nor to the file at its path.
+/// Closing a journal without records removes its file.
 class Journal {
  public:
   using Entry = sweep::Report;
   struct Contents {
     std::vector<Entry> entries;       ///< records, the oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
-    /// Whether the last record is incomplete: its writer died, or is still writing it.
+    /// Whether the last record is incomplete, because its writer died or is still writing it.
     bool has_torn_end = false;
     std::uint64_t num_bytes = 0;  ///< size of the file without an incomplete record at the end
   };
@@ -57,9 +57,9 @@ class Journal {
   const std::string& path() const { return place_.path(); }
   /// Whether the open file is still the file at its path.
   bool is_there() const { return place_.holds(file_); }
-  /// Creates and locks an empty journal where the old one was removed. Returns false if another sweep has
-  /// started there. @throws Error if it cannot be written
-  bool make_anew(const OutputPath& table);
+  /// Creates and locks an empty journal at the path of the removed journal. Returns false if another sweep
+  /// has started there. @throws Error if it cannot be written
+  bool recreate(const OutputPath& table);
 
   /// The records that the file had when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
@@ -78,8 +78,8 @@ class Journal {
   bool is_to_be_rewritten() const;
   /// Replaces the file by one with only these entries.
   void rewrite(std::span<const Entry* const> entries);
-  /// Prepares a file with these entries and the records behind the first `begin` bytes; replace() puts it in
-  /// place. Like flush(), this may be called by another thread.
+  /// Prepares a file with these entries and with the records behind the first `begin` bytes. replace() then
+  /// moves this file to the path. Another thread may call prepare(), as for flush().
   void prepare(std::span<const Entry* const> entries, std::uint64_t begin);
   bool is_prepared() const { return next_ != nullptr; }
   void replace();

@@ -11,14 +11,14 @@
 
 namespace clog::store {
 
-/// Checks that a path leads to a regular file, or to no file yet, and returns the path. Tables, trajectories
-/// and journals are regular files: opening a pipe would wait, and only regular files can be locked, read at
-/// any place and replaced as a whole. Links are followed.
+/// Checks that a path leads to a regular file, or to no file yet, and returns the path. Links are followed.
+/// Tables, trajectories and journals must be regular files: opening a pipe would wait, and only regular files
+/// can be locked, read at any place and replaced in one step.
 /// @throws Error if the path leads to something else
 std::string require_regular(std::string path);
 
-/// The location of a file, which may not exist yet. The object holds the file's folder open, and knows the
-/// file's name in that folder. Symbolic links are followed once, by resolve(), so writes are not redirected
+/// The location of a file, which may not exist yet. The object keeps the file's folder open, and stores the
+/// file's name in that folder. Symbolic links are followed once, by resolve(). So writes are not redirected
 /// if somebody changes the links or moves the folder later.
 class OutputPath {
  public:
@@ -26,7 +26,8 @@ class OutputPath {
   /// @throws Error if the path names no file, its folder cannot be opened, or a link on the path is in a
   /// world-writable sticky folder and belongs neither to this user nor to the folder's owner
   static OutputPath resolve(const std::string& path);
-  /// The file in the same folder whose name is this name with an ending. If it is a link, it is not followed.
+  /// The file in the same folder with the name of this file plus an ending. If it is a link, it is not
+  /// followed.
   OutputPath beside(const std::string& ending) const;
   bool is_link() const;
 
@@ -43,22 +44,23 @@ class OutputPath {
   bool holds(int descriptor, std::error_code* failure = nullptr) const;
   /// Removes the file, if there is one. Returns the reason if that failed.
   std::error_code remove() const;
-  /// Renames the file at `other`, in the same folder, to this name, where it replaces the file with this
-  /// stamp(). If that file was removed, or if the stamp is empty, it replaces no file. Returns the reason if
-  /// the renaming failed: `file_exists` if a different file has this name; then both files stay. If the file
-  /// system can exchange two names at once, even a file that appears here at the last moment stays.
+  /// Renames the file at `other`, in the same folder, to this name. It replaces the file with this stamp().
+  /// If that file was removed, or if the stamp is empty, it replaces no file. Returns the reason if the
+  /// renaming failed: `file_exists` if a different file has this name; then both files stay. If the file
+  /// system can exchange two names in one step, even a file that appears here at the last moment stays.
   std::error_code replace(const std::string& stamp, const OutputPath& other) const;
   /// Synchronises the folder to disk, so that renames survive a power cut.
   void sync_folder() const;
-  /// The reason why sync_folder() last failed, for this object, its copies, or the results of beside(); empty
-  /// if it has not failed.
+  /// The reason of the last failure of sync_folder(), for this object, its copies, or the results of
+  /// beside(); empty if it has not failed.
   const std::string& sync_fault() const { return folder_->sync_fault; }
-  /// Copies mode, owner, group and access list of the file here, if there is one, to an open file, as far as
-  /// permitted.
+  /// Copies mode, owner, group and access list to an open file, as far as permitted. They are those of the
+  /// file at this path, if there is one.
   void lend_access_to(int descriptor) const;
-  /// Identifies the file by size and seal or, without a seal, by device, inode and size. If another file is
-  /// moved here, the stamp changes. It does not depend on mode and times. On some network file systems, the
-  /// inode of a file changes, and with it the stamp of a file without a seal. Empty if there is no file.
+  /// Identifies the file by its size and seal or, without a seal, by device, inode and size. The stamp
+  /// changes if another file is moved here. It does not depend on mode and times. On some network file
+  /// systems the inode of a file may change; this changes the stamp of a file without a seal. Empty if there
+  /// is no file.
   std::string stamp() const;
 
  private:

@@ -15,6 +15,9 @@ namespace clog::store {
 
 /// Version of the file format; see docs/reference/files.md.
 inline constexpr const char* format_version = "11";
+/// Version of files that also have a table of droplets. Older programs must not read such a file without this
+/// table.
+inline constexpr const char* format_version_with_droplets = "12";
 
 /// Names and texts of the attributes at the file's root, which describe the origin of the file's numbers.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
@@ -63,10 +66,10 @@ struct Rows {
 };
 
 /// Writes a sweep's file in place of the file with this OutputPath::stamp(). At every moment the path names a
-/// complete table, the old or the new one, so readers may read it at any time. When this function returns,
-/// the new table is on the disk. Returns the stamp of the written file, even if somebody has replaced the
-/// file since. Returns nullopt if a file with another stamp is there; this file stays. @throws Error if the
-/// file cannot be written; then the old file stays
+/// complete table, either the old or the new one, so readers may read it at any time. When this function
+/// returns, the new table is on the disk. Returns the stamp of the written file, even if somebody has
+/// replaced the file since. Returns nullopt if a file with another stamp is there; this file stays. @throws
+/// Error if the file cannot be written; then the old file stays
 std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
                                          const Provenance& provenance,
                                          const std::vector<CircleFile>& circles);
@@ -75,12 +78,12 @@ inline std::optional<std::string> publish_sweep(const OutputPath& place, const s
   return publish_sweep(place, stamp, Rows::of(content.rows), content.provenance, content.circles);
 }
 
-/// Reads a file of format version 9 to 11. Missing columns get Parameter::before, or are unknown. @throws
-/// Error if the file is missing, not HDF5, not ours, of another format version, or damaged
+/// Reads a file of format version 9 to 12. Missing columns get Parameter::before, or are unknown. @throws
+/// Error if the file is missing, damaged, not HDF5, not written by clogsweep, or of another format version
 SweepFile read_sweep(const std::string& path);
-/// If a file has no valid seal, tries to read it in a child process. Then a later read_sweep() of the same
-/// bytes does not fork, which a process that has called MPI_Init must not do. Throws nothing, because
-/// read_sweep() throws the error.
+/// If a file has no valid seal, tries to read it in a child process. A later read_sweep() of the same bytes
+/// then need not fork; a process that has called MPI_Init must not fork. Throws nothing, because read_sweep()
+/// throws the error.
 void try_before_mpi(const std::string& path);
 /// A warning for readers of this file; empty if all of it was verified.
 std::string caution(const std::string& path, const SweepFile& file);
@@ -91,11 +94,11 @@ void refuse_foreign_objects(const std::string& path, const SweepFile& file);
 /// A file that may be damaged: the intact rows and attributes, and a list of the damage.
 struct Examination {
   SweepFile whole;
-  std::vector<std::string> damage;  ///< a sentence for each damage
-  /// Whether one of HDF5's own checksums does not match, so that h5py and other readers refuse the file.
+  std::vector<std::string> damage;  ///< a sentence about each damaged part
+  /// Whether one of HDF5's own checksums does not match. Then h5py and other readers refuse the file.
   bool is_refused_by_others = false;
 };
-/// @throws Error if the file is missing, not ours, or completely unreadable
+/// @throws Error if the file is missing, not written by clogsweep, or completely unreadable
 Examination examine_sweep(const std::string& path);
 
 }  // namespace clog::store

@@ -47,21 +47,31 @@ struct Column {
   const Parameter*
       parameter;      ///< the parameter that the column holds; nullptr if there is none or more than one
   bool shapes_array;  ///< see Parameter
+  /// Runs to which the column applies; nullptr: all.
+  const ParameterScope* scope = nullptr;
   std::function<Value(const RunRow&)> get;
   /// @throws Error if no row can have this value
   std::function<void(RunRow&, const Value&)> set;
   /// Sets the value of a row whose file does not have this column.
   std::function<void(RunRow&)> set_unknown;
+  /// The value by which rows are compared, unset if it follows from other columns; null: see Parameter.
+  std::function<Value(const RunRow&)> compared = nullptr;
+  /// The default for a row with its model and preset, unset if there is none; null: as in a run with defaults
+  /// for all other parameters. @throws Error if the row's parameters are impossible
+  std::function<Value(const RunRow&)> usual = nullptr;
+
+  bool applies_to(const RunParameters& run) const { return !scope || scope->holds(run); }
 
   /// See Parameter.
   bool may_be_automatic(const RunParameters& run) const {
     return parameter && parameter->may_be_automatic(run);
   }
 
-  /// Whether the column stores the checksum of a file or of a text.
-  bool holds_check_sum() const {
-    return parameter && (parameter->kind == ValueKind::file || parameter->kind == ValueKind::text);
-  }
+  /// Whether the column stores the checksum of a file.
+  bool holds_file() const { return parameter && parameter->kind == ValueKind::file; }
+  /// Whether the column stores the checksum of a text.
+  bool holds_text() const { return parameter && parameter->kind == ValueKind::text; }
+  bool holds_check_sum() const { return holds_file() || holds_text(); }
 
   /// Writes `size` bytes in a file's layout; unset values are stored as NaN, -1 or "".
   void pack(const RunRow& row, std::byte* bytes) const;

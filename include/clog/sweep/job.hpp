@@ -11,7 +11,7 @@
 
 namespace clog::sweep {
 
-/// A task computed in slices, so that its process can handle messages in between.
+/// A task that is computed in slices, so that its process can handle messages in between.
 class Job {
  public:
   virtual ~Job() = default;
@@ -19,12 +19,12 @@ class Job {
   /// row of status `failed`; advance() does not throw.
   virtual bool advance() = 0;
   /// Whether row() and snapshot() have the task's present state. The call never waits. If another process
-  /// computes the job, a first call sends this process a request and returns false; after advance() has
-  /// received the answer, one call returns true.
+  /// computes the job, the first call sends a request to this process and returns false. advance() receives
+  /// the answer; then one call returns true.
   virtual bool refresh() { return true; }
-  /// The task's row. As long as the task is not over, the row has the status `interrupted`. If the task could
-  /// not use its snapshot and restarted, the message says why, unless it says why the task failed. Rank 0
-  /// stores only the latter.
+  /// The task's row. Until the task is over, the row has the status `interrupted`. If the task could not use
+  /// its snapshot and restarted, the message says why. If the task failed, the message gives only the reason
+  /// of the failure. Rank 0 stores only messages about failures.
   virtual RunRow row() const = 0;
   /// A snapshot from which another job of this task can resume; empty if there is none yet.
   virtual std::vector<std::byte> snapshot() const { return {}; }

@@ -31,6 +31,8 @@ struct Key {
 
 /// All keys, in the order in which they are shown.
 const std::vector<Key>& keys();
+/// The key that lists the runs of a parameter set.
+const Key& seeds_key();
 /// Suggestions for a word that is no key: the key whose symbol in the paper is this word (Gamma, w_ob), or up
 /// to three names that contain the word, or the nearest name. Empty if there is none.
 std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);

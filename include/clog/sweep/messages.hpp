@@ -17,7 +17,8 @@ struct Start {
 };
 
 /// Progress of a task: the task's row and, if there is one, a snapshot from which the task can resume. A
-/// sweep's journal consists of reports, too.
+/// sweep's journal consists of reports, too. In the bytes of a report, the row is followed by its family;
+/// without a family, by the snapshot.
 struct Report {
   RunRow row;
   std::vector<std::byte> snapshot;

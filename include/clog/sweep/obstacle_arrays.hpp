@@ -15,7 +15,8 @@ std::string array_key(const RunParameters& run);
 /// The walls of a sweep's runs, usually obstacle arrays. The last array is kept, because a sweep requests the
 /// same array many times in a row. Large arrays are shared by all processes of the same user and executable
 /// on a machine: one process builds the array while the others wait, and memory holds it only once. If
-/// sharing fails, every process waits in vain once, and then builds its own array.
+/// sharing fails, every process waits once until the longest_wait() is over, and then builds a separate
+/// array.
 class ObstacleArrays {
  public:
   /// @param run  resolved
@@ -33,7 +34,7 @@ class ObstacleArrays {
   std::string key_;  ///< key of the array that is kept; empty if there is none
   std::shared_ptr<const ObstacleArray> array_;
   int num_built_ = 0;
-  bool is_waiting_worthwhile_ = true;  ///< false after a wait in vain, until a shared array is found
+  bool is_waiting_worthwhile_ = true;  ///< false after such a wait, until a shared array is found
 
   ObstacleArray build(const RunParameters& run);
   ObstacleArray find_or_build(const RunParameters& run);

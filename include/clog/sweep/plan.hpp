@@ -18,8 +18,8 @@ namespace clog::sweep {
 using GroupOf = std::function<std::int64_t(std::int64_t task)>;
 
 /// Describes the runs of a sweep, so that any task can be made in any order. A plan is a list of parameter
-/// sets, called groups, each with its seeds. The parameter sets are the products of the settings' lists, one
-/// product for each point.
+/// sets, called groups; each group has its seeds. The parameter sets are the product of the settings' lists;
+/// with points, there is one such product for each point.
 ///
 /// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array. If
 /// all groups have equally many seeds, task s * num_groups() + g is seed s of group g.
@@ -30,7 +30,7 @@ class Plan {
   explicit Plan(const Settings& settings);
 
   std::int64_t size() const { return size_; }
-  /// Number of tasks without a twin: so many runs are computed.
+  /// Number of tasks without a twin, see twin(). This is the number of computed runs.
   std::int64_t num_runs() const { return num_runs_; }
   /// Resolved parameters of task `index`, 0 <= index < size().
   RunParameters task(std::int64_t index) const;
@@ -41,16 +41,16 @@ class Plan {
   std::int64_t group_of(std::int64_t task) const;
   std::int64_t num_seeds(std::int64_t group) const;
   std::vector<std::uint32_t> seeds(std::int64_t group) const;
-  /// The group's values as texts of the lists, in the order of keys(); the text of the seeds is empty.
+  /// The group's values, as texts of the lists, in the order of keys(); the text of the seeds is empty.
   std::vector<std::string> texts(std::int64_t group) const;
   /// @param place  place of the task's seed among the seeds of the group, 0 <= place < num_seeds(group)
   std::int64_t task_of(std::int64_t group, std::int64_t place) const;
-  /// The first task with the same run in another laboratory, on which runs do not depend; empty if this task
-  /// is the first.
+  /// The first task with the same run in another laboratory. (Runs do not depend on the laboratory.) Empty if
+  /// this task is the first.
   std::optional<std::int64_t> twin(std::int64_t task) const;
   /// Whether each of the group's tasks has a twin.
   bool has_twin(std::int64_t group) const { return groups_[static_cast<std::size_t>(group)].twin >= 0; }
-  /// Whether every group has equally many seeds, and task s num_groups() + g is seed s of group g.
+  /// Whether every group has equally many seeds, and task s * num_groups() + g is seed s of group g.
   bool has_equal_seeds() const { return layers_.size() == 1; }
 
   /// The circles of the plan's tasks, by file.
@@ -63,15 +63,17 @@ class Plan {
     const Key* key;
     std::vector<std::string> values;
   };
-  /// The lists of one branch of the settings that differ from those of the first branch, by place in axes_.
+  /// The lists of one branch of the settings that differ from those of the first branch, by their places in
+  /// axes_.
   using OwnLists = std::map<std::size_t, std::vector<std::string>>;
   using Seeds = std::shared_ptr<const std::vector<std::uint32_t>>;
   struct Group {
     std::size_t product;
     std::int64_t place;  ///< place in the product, seeds excepted
     Seeds seeds;
-    std::int64_t runs;  ///< the first group with the same parameters except the laboratory, without shards
-    std::int64_t twin = -1;  ///< group of the twins of this group's tasks; -1 if they have none
+    std::int64_t
+        runs;  ///< the first group that has the same parameters apart from the laboratory, without shards
+    std::int64_t twin = -1;  ///< group that contains the twins of this group's tasks; -1 if they have none
   };
   /// Successive tasks that go through the same groups again and again, each time with the next seed.
   struct Layer {

@@ -6,11 +6,11 @@
 
 namespace clog::sweep {
 
-/// Parameter sets, listed one by one: each has its own texts for `keys`, and the texts of the settings for
+/// Parameter sets, listed one by one. Each has separate texts for `keys`, and the texts of the settings for
 /// all other keys. A text may be a list; the text of the key seeds usually is a list.
 struct Points {
   std::vector<std::string> keys;
-  /// A text for every key; an empty one stands for the settings' text.
+  /// A text for every key. An empty text is replaced by the settings' text.
   std::vector<std::vector<std::string>> rows;
   /// The file from which the points come, and the line of each point there, for messages; empty: none.
   std::string file = {};

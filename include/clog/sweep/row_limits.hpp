@@ -14,13 +14,13 @@ std::vector<std::string> untested_parameters(const RunRow& row);
 /// One line about all runs of a plan; empty if all are within the tested range.
 std::string untested_parameters(const Plan& plan);
 
-/// Distance after which a droplet may meet the same obstacles again [sigma]: the length of an array that
-/// represents a random one. Periodicity across the flow does not shorten this distance. It is infinite for
-/// lattices, which repeat by nature, and without an array.
+/// Distance after which a droplet may meet the same obstacles again [sigma]. It is the length of an array
+/// that represents a random one. Periodicity across the flow does not shorten this distance. It is infinite
+/// without an array, and for lattices, because a real lattice repeats, too.
 double repetition_length(const RunRow& row);
 /// Whether the droplet has come as far as repetition_length().
 bool has_met_repetition(const RunRow& row);
-/// One line on whether runs of a plan may come as far as their repetition_length(); empty if none may.
+/// A warning of one line if runs of a plan may reach their repetition_length(); empty if none may.
 std::string possible_repetition(const Plan& plan);
 
 /// Lines about files of circles that leave a conspicuous part of their array bare, or have circles without a
@@ -33,29 +33,30 @@ std::vector<std::string> limits_of_results(const Plan& plan);
 /// Largest share of the droplet's weight that the polygon's corners may carry; beyond it, a clog is
 /// attributed to the corners, not to the obstacles.
 inline constexpr double tolerated_mesh_hold = 0.01;
-/// Largest difference that friction bears between the weights of the two lobes of a wrapped droplet, as a
-/// share of the droplet's weight. Such a droplet hangs over a round obstacle with a lobe on each side. Two
-/// parts of its interface, one above the other with a film between them, lie on half of the obstacle's
-/// circumference. So the tensions on the two sides have a ratio of at most exp(pi mu), as with a capstan. The
-/// result is zero unless friction acts on both parts of the interface (film-friction=on).
+/// Largest difference between the weights of the two lobes of a wrapped droplet that friction can hold, as a
+/// share of the droplet's weight. A wrapped droplet hangs over a round obstacle with a lobe on each side. On
+/// half of the obstacle's circumference there are two parts of its interface, one above the other, with a
+/// film between them. So the tensions on the two sides have a ratio of at most exp(pi mu), as with a capstan.
+/// The result is zero unless friction acts on both parts of the interface (film-friction=on).
 double weight_borne_by_friction(const DpParameters& dp);
-/// Whether the corners may hold this clog: they may if they can bear more of the weight than friction does.
-/// If mesh_hold is unknown, or friction acts only on the interface next to the wall, the result is true for
-/// every droplet that hangs over obstacles (docs/explanation/wrapped.md).
+/// Whether the corners of the polygon may hold this clog. This is the case if they can bear more of the
+/// weight than friction does. If mesh_hold is unknown, or if friction acts only on the interface next to the
+/// wall, the result is true for every droplet that hangs over obstacles (docs/explanation/wrapped.md).
 bool may_hang_on_mesh(const RunRow& row);
-/// Largest friction_use of a clog that finer meshes hold, too. Meshes of 256 to 1024 vertices agree within
-/// 5 % on how far beside a post a droplet is held (docs/notes/2026-11-28-layers.md). Beyond the limit, a
-/// finer mesh may let the droplet go.
+/// Largest friction_use of a clog that finer meshes also hold. Meshes of 256 to 1024 vertices agree within 5
+/// % on the largest distance from a post's axis at which friction holds a droplet
+/// (docs/notes/2026-11-28-layers.md). Beyond this friction_use, a finer mesh may let the droplet go.
 inline constexpr double tolerated_friction_use = 0.95;
-/// From this friction_use on, the droplet slid around a post until the friction held it. So the force that
-/// drives it falls in the direction of sliding, and it would stop close by on other meshes, too.
+/// With at least this friction_use, the droplet slid around a post until friction held it. So the driving
+/// force decreases in the direction of sliding, and on other meshes the droplet would also stop nearby.
 inline constexpr double arrested_friction_use = 0.999;
-/// Whether the droplet is held by nearly all the friction that there is, without having slid until it held.
+/// Whether nearly all available friction is needed to hold the droplet, and the droplet did not slide until
+/// it held.
 bool is_near_friction_limit(const RunRow& row);
 
-/// Smallest possible centre-to-centre distance of two obstacles, or its mean if diameters vary [sigma].
-/// User-supplied circles may have any diameters, and one gap may be narrower than all others, so their
-/// spacing is 1/sqrt(circles per area). The release void is about as large as the spacing.
+/// Smallest possible centre-to-centre distance of two obstacles, or its mean if diameters vary [sigma]. For
+/// user-supplied circles the spacing is 1/sqrt(circles per area), because their diameters may vary, and one
+/// gap may be narrower than all others. The release void is about as large as the spacing.
 double obstacle_spacing(const RunRow& row);
 
 }  // namespace clog::sweep

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "clog/core/run/droplet_run.hpp"
+#include "clog/core/run/family.hpp"
 #include "clog/sweep/job.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/plan.hpp"
@@ -27,13 +27,13 @@ class RunJob final : public Job {
   RunParameters run_parameters_;
   std::vector<std::byte> snapshot_;
   std::shared_ptr<ObstacleArrays> arrays_;
-  std::unique_ptr<DropletRun> run_;  // made at the first advance(), because the release may fail
+  std::unique_ptr<FamilyRun> run_;  // made at the first advance(), because the release may fail
   RunRow row_;
   std::string why_restarted_;  // why the snapshot cannot be used; empty if it can
   double wall_seconds_ = 0, processor_seconds_ = 0;
   bool over_ = false;
 
-  DropletRun start();
+  FamilyRun start();
 };
 
 /// @param plan  must outlive the jobs

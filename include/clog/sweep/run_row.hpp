@@ -12,6 +12,7 @@
 
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "clog/core/run/family.hpp"
 
 namespace clog::sweep {
 
@@ -32,6 +33,10 @@ struct RunRow : RunResult {
     contacts.number = healed_crossings = not_counted;
     hold.geometry.num_wrapped = hold.geometry.num_gaps = hold.geometry.num_arcs = not_counted;
   }
+
+  /// The members of a family that has ended, with break-up=daughters. They are no columns, but lines of the
+  /// table of droplets.
+  std::vector<Member> family;
 
   std::int64_t task = -1;
 
@@ -77,6 +82,9 @@ inline bool is_final(const RunRow& row) {
 /// because their `distance` may be wrong. In these files a run that crossed itself was observed up to the
 /// check that found the crossing, at most 2048 steps too far [sigma].
 std::optional<double> observed_distance(const RunRow& row);
+
+/// Whether the row names a preset of some version.
+inline bool has_named_preset(const RunRow& row) { return row.preset != "none" && row.preset != "custom"; }
 
 /// Cost of a run so far [s]: its processor time, or its wall-clock time if that is unknown.
 inline double cost_seconds(const RunRow& row) {

@@ -16,9 +16,9 @@
 
 namespace clog::sweep {
 
-/// Escapes a value for a line of a config: characters that would end or cut the line (control characters, #,
-/// a backslash, blanks at the ends) become a backslash, x and two digits. unescaped() restores the value,
-/// whatever bytes it has.
+/// Escapes a value for a line of a config. Characters that would end or cut the line (control characters, #,
+/// a backslash, blanks at the ends) become a backslash, x and two digits. unescaped() restores the value for
+/// any bytes.
 std::string escaped(const std::string& text);
 /// The inverse of escaped(). Any other backslash stays a backslash.
 std::string unescaped(const std::string& text);
@@ -30,9 +30,9 @@ inline constexpr const char* circles_key = "obstacles";
 /// Whether a config explains its keys.
 enum class Comments { none, help };
 
-/// The settings of a sweep: the texts that were given for some keys, and the texts of all other keys, which
-/// follow from these or are defaults. The parameter sets are the product of all lists. With points, each
-/// point has the product of the lists of those keys that it does not set.
+/// The settings of a sweep: given texts for some keys, and texts for all other keys, which follow from the
+/// given texts or are defaults. The parameter sets are the product of all lists. With points, each point
+/// gives the product of the lists of the keys that it does not set.
 class Settings {
  public:
   /// Reads the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
@@ -56,16 +56,16 @@ class Settings {
   void set_shard(Shard shard) { shard_ = shard; }
   const Shard& shard() const { return shard_; }
 
-  /// Calls `visit` for each branch of the settings: for each point, and for each combination of the values of
-  /// keys of kind `word`. The settings of a branch have no points and one value for each of these keys, so
-  /// that the branch's runs are the product of the other lists.
+  /// Calls `visit` for each branch of the settings. There is a branch for each combination of a point and
+  /// values of the keys of kind `word`. The settings of a branch have no points and one value for each of
+  /// these keys. So the branch's runs are the product of the other lists.
   /// @param point  place of the branch's point; -1 without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
   /// All values() that each key has in any of the branches.
   std::map<std::string, std::vector<std::string>> all_values() const;
 
-  /// A line of a config: a key with its text, or one of `point-keys`, `point`, `shard`.
+  /// A line of a config: a key with its text, or one of the lines `point-keys`, `point`, `shard`.
   void set_line(const std::string& name, const std::string& text);
   /// Whether this is the name of such a line and not a key.
   static bool is_plan_line(const std::string& name);
@@ -77,11 +77,11 @@ class Settings {
   /// Files that are named but not attached.
   std::vector<std::string> missing_files() const;
 
-  /// All settings, circles included, as text for other ranks; and the inverse. @throws Error
+  /// All settings, including circles, as text for other ranks; and the inverse. @throws Error
   std::string packed() const;
   static Settings from_packed(const std::string& text);
 
-  /// All keys as a config file, which reads back as the same settings.
+  /// All keys as a config file. Reading this file gives the same settings.
   std::string to_config(Comments comments = Comments::none) const;
 
  private:
@@ -105,11 +105,11 @@ class Settings {
   std::set<std::string> keys_that_follow() const;
 };
 
-/// Refuses keys that have no effect because of another key or of the scene, in addition to those that
-/// check_each() refuses.
+/// Refuses keys that have no effect because of another key or of the scene. check_each() refuses further
+/// ones.
 /// @param settings  a branch, which has one value for each key of kind `word` @throws Error
 void refuse_contradictions(const Settings& settings);
-/// The setting because of which all seeds lead to the same run; empty if something is random.
+/// The setting because of which all seeds give the same run; empty if something is random.
 std::string why_nothing_is_random(const RunParameters& run);
 /// A question about a list that may be a mistyped decimal below one, such as 0,5; empty for any other list.
 std::string possible_decimal(const Key& key, const Settings& settings);

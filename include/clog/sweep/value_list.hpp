@@ -24,8 +24,8 @@ std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
 
 /// The items of a list without blanks around them: commas outside parentheses separate them.
 std::vector<std::string_view> split_list(std::string_view list);
-/// The numbers of a list as they are written, in order, perhaps with units: its items; of lin(a,b,n) and
-/// log(a,b,n) a and b.
+/// The numbers of a list as they are written, in order, perhaps with units. They are the items of the list;
+/// for lin(a,b,n) and log(a,b,n) they are a and b.
 std::vector<std::string_view> numbers_in(std::string_view list);
 
 using clog::shortest;

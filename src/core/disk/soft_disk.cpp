@@ -18,8 +18,8 @@
 namespace clog {
 namespace {
 
-/// Up to a dozen obstacles of a saturated array overlap a soft disk at once. (omega dt)^2 of all these
-/// contacts together has the same bound as that of all modes of the polygon.
+/// Up to a dozen obstacles of a saturated array overlap a soft disk at once. The bound on (omega dt)^2 of all
+/// these contacts together is that of all modes of the polygon together.
 constexpr double most_contacts = 12;
 constexpr double max_omega_dt2 = 3.0;
 
@@ -75,8 +75,8 @@ DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacl
   return state;
 }
 
-/// Upper bound of the energy at release: as many obstacles as fit into the disk's reach overlap the disk,
-/// each of them at most up to the disk's centre.
+/// Upper bound of the energy at release. It assumes that the disk overlaps the largest number of obstacles
+/// that fit into its reach, and that each obstacle reaches at most to the disk's centre.
 double energy_of_overlaps(const RunParameters& run) {
   const double spacing = run.obstacles.smallest_diameter() + run.obstacles.gap;
   const double across = (units::droplet_diameter + run.obstacles.diameter + spacing) / spacing;

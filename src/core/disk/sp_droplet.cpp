@@ -13,8 +13,8 @@ namespace {
 
 constexpr int most_steps_per_check = 32;
 constexpr double contact_range = units::droplet_diameter / 2;
-/// Skin of the list of obstacles. A disk moves this far in some hundred steps, so the list is seldom renewed,
-/// and it stays short.
+/// Skin of the list of obstacles. A disk moves this far in some hundred steps, so the list is seldom rebuilt.
+/// The list is also short.
 constexpr double usual_skin = 0.02;  // [sigma]
 
 }  // namespace
@@ -54,12 +54,12 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
   return force;
 }
 
-/// Only a root, a division and a few sums depend on each other; the processor executes the other operations
-/// at the same time.
+/// Only a root, a division and a few sums depend on each other; the processor overlaps them with the other
+/// operations.
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);
-  Eigen::Array2d push(0, 0);  // the part that needs a root: stiffness times reach along each arm
+  Eigen::Array2d push(0, 0);  // the part of the force that needs a root
   Eigen::Array2d rest = scale * weight_;
   for (const Obstacle& obstacle : near_) {
     const Eigen::Array2d arm = place - Eigen::Array2d(obstacle.x, obstacle.y);
@@ -103,10 +103,10 @@ PotentialEnergy SpForces::energy(const DropletState& state) const {
 SpDroplet::SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
     : run_(run), forces_(run, obstacles) {
   state_ = std::move(initial);
-  SpDroplet::start_afresh();
+  SpDroplet::rebuild_lists();
 }
 
-void SpDroplet::start_afresh() {
+void SpDroplet::rebuild_lists() {
   forces_.forget_contacts();
   forces_.update_contacts(state_, state_.possible_travel(run_.time_step.value()));
   force_ = forces_.force_at(state_.position.head<2>(), state_.frame);
@@ -115,7 +115,7 @@ void SpDroplet::start_afresh() {
 void SpDroplet::advance(int num_steps) {
   const double dt = run_.time_step.value();
   for (int done = 0, steps = 0; done < num_steps; done += steps) {
-    // At large steps and high speeds, checks are more frequent, so that the list of obstacles stays short.
+    // At long steps and high speeds, checks are more frequent, so that the list of obstacles stays short.
     steps = std::min(most_steps_per_check, num_steps - done);
     while (steps > 1 && state_.possible_travel(steps * dt).absolute > usual_skin) steps /= 2;
     if (state_.recentre().any()) forces_.forget_contacts();

@@ -12,7 +12,7 @@ void Droplet::restore(ByteReader& bytes) {
   state_.restore(bytes);
   bytes.get(work_);
   bytes.get(num_integrated_steps_);
-  start_afresh();
+  rebuild_lists();
 }
 
 }  // namespace clog

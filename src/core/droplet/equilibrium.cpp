@@ -36,7 +36,7 @@ constexpr double move_tolerance = 1e-7;
 /// Largest fraction of the remaining distance that an accepted step may leave.
 constexpr double most_left = 0.75;
 /// A correction keeps at least this fraction of the stiffness along a step. A contact that opens during the
-/// step may remove nearly all of this stiffness, and the next step would then be far too long.
+/// step may reduce this stiffness to nearly zero, and the next step would then be far too long.
 constexpr double least_part = 0.5;
 
 double point_weight(const DropletState& state) {
@@ -55,17 +55,17 @@ bool is_definite(double bound, const MatrixXd& k) {
 /// Whether every displacement decays under drag, dx/dt = -Kx, faster than with stiffness `bound`. This is the
 /// case if K - bound is positive definite, which is cheap to test. If the forces have an energy, K is
 /// symmetric, and the condition is also necessary. Springs along the interface have no energy and make K
-/// slightly unsymmetric. Then a soft K may be stable without being positive definite, so its eigenvalues
+/// slightly unsymmetric. A soft K may then be stable without being positive definite, so the eigenvalues of K
 /// decide.
 bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
   if (is_definite(bound, k)) return true;
   return !has_energy && Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
 }
 
-/// The stiffness K, which is minus the derivative of the force, in two parts: K_tt of the points along the
-/// interface, and the Schur complement K_nn - K_nt K_tt^-1 K_tn, the stiffness of the shape if the points
-/// adapt along the interface. If the points were fixed along the interface, the mesh would seem to hold a
-/// droplet that is free to drift aside.
+/// The stiffness K, minus the derivative of the force, in two parts. K_tt is the stiffness of the points
+/// along the interface. The Schur complement K_nn - K_nt K_tt^-1 K_tn is the stiffness of the shape while the
+/// points adapt along the interface. If the points could not adapt, the mesh would seem to hold a droplet
+/// that is free to drift aside.
 class Stiffness {
  public:
   explicit Stiffness(bool has_energy) : has_energy_(has_energy) {}
@@ -81,15 +81,16 @@ class Stiffness {
     shape_ = k.topLeftCorner(n, n) - normal_along_ * adapting_;
     return true;
   }
-  /// Whether the shape resists all displacements by more than `bound`; otherwise solve() must not be called.
+  /// Whether the shape resists all displacements with a stiffness above `bound`. If not, solve() must not be
+  /// called.
   bool resists(double bound) {
     assert(shape_.size() > 0);
     if (!is_stable(bound, shape_, has_energy_)) return false;
     shape_factor_.compute(shape_);
     return true;
   }
-  /// Smallest stiffness of the shape: the slowest rate at which a displacement decays under drag, or minus
-  /// the largest one at which it grows.
+  /// Smallest stiffness of the shape. It is the slowest rate at which a displacement decays under drag. If
+  /// some displacement grows, it is minus the largest rate of growth.
   double smallest() const {
     assert(shape_.size() > 0);
     if (has_energy_)
@@ -108,11 +109,11 @@ class Stiffness {
     return move;
   }
 
-  /// Changes K by a matrix of rank one, so that solve() maps the change of force along `step` to `step`, as
-  /// far as least_part allows. A contact changes K by rank one, too, so a few corrections are enough. C. G.
-  /// Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein, Math. Comp. 30, 523 (1976).
+  /// Changes K by a matrix of rank one. After this, solve() maps the change of force along `step` to `step`,
+  /// as far as least_part allows. A contact changes K by rank one, too, so a few corrections are enough. C.
+  /// G. Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein, Math. Comp. 30, 523 (1976).
   /// @param found  the displacement that solve() gives for this change of force before the correction
-  void learn(const VectorXd& step, const VectorXd& found) {
+  void add_correction(const VectorXd& step, const VectorXd& found) {
     const double part_kept = step.dot(found) / step.squaredNorm();
     const double share = part_kept < least_part ? (1 - least_part) / (1 - part_kept) : 1;
     const VectorXd excess = share * (found - step);
@@ -145,7 +146,7 @@ class ForceField {
   const DropletState& state() const { return state_; }
   void move_to(const ArrayXd& position) { state_.position = position; }
 
-  /// The contact lists are then valid for a stiffness() with this step.
+  /// After this call, the contact lists are valid for a stiffness() with this step.
   VectorXd force_at(const ArrayXd& position, const Axes& axes, double step = difference_step) {
     move_to(position);
     forces_.update_contacts(state_, {.absolute = 2 * step, .relative = 4 * step});
@@ -193,13 +194,13 @@ class ForceField {
 };
 
 /// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
-/// stiffness (P. Deuflhard's natural monotonicity test). A test on forces would reject nearly every step,
+/// stiffness (P. Deuflhard's natural monotonicity test). A test of the forces would reject nearly every step,
 /// because contacts that open or close dominate the forces. Computing a stiffness costs as much as 80 steps,
-/// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is recomputed
-/// where corrections do not help, and once more at the end, within difference_step of the equilibrium. If
-/// steps with corrections fail, or lead to a place where some displacement meets no resistance, the search
-/// returns to the place of the last computed stiffness. From there it continues without corrections, with
-/// halved steps.
+/// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is recomputed where
+/// corrections do not help, and once more at the end, within difference_step of the equilibrium. Steps with
+/// corrections may fail, or reach a place where some displacement meets no resistance. The search then
+/// returns to the place of the last computed stiffness, and continues from there with halved steps and
+/// without corrections.
 class Search {
  public:
   Search(const EquilibriumForces& forces, const DropletState& initial)
@@ -237,7 +238,7 @@ class Search {
   bool halves_ = false;
   ArrayXd position_;
   ArrayXd begun_at_;  // place of the last computed stiffness that resists all displacements
-  // At the present position:
+  // The members from here on belong to the present position.
   Axes axes_;
   VectorXd force_;
   VectorXd move_;  // displacement to the equilibrium, according to the stiffness
@@ -264,28 +265,28 @@ class Search {
     return rests();
   }
 
-  /// Moves by a part of the step, if at most the fraction `share` of the distance to the equilibrium then
-  /// remains. Returns whether the droplet moved.
+  /// Moves by a part of the step, if the remaining distance is then at most the fraction `share` of the
+  /// present distance. Returns whether the droplet moved.
   bool tries(double part, double share) {
     const VectorXd step = part * move_;
     const ArrayXd place = position_ + (axes_.directions * step).array();
     VectorXd force_there = field_.force_at(place, axes_);
-    VectorXd way_left = stiffness_.solve(force_there);
-    if (!way_left.allFinite()) return false;
-    const bool succeeds = way_left.norm() < share * move_.norm();
-    if (!halves_) stiffness_.learn(step, move_ - way_left);
+    VectorXd remaining_move = stiffness_.solve(force_there);
+    if (!remaining_move.allFinite()) return false;
+    const bool succeeds = remaining_move.norm() < share * move_.norm();
+    if (!halves_) stiffness_.add_correction(step, move_ - remaining_move);
     if (succeeds) {
       position_ = place;
       force_ = std::move(force_there);
-      move_ = std::move(way_left);
+      move_ = std::move(remaining_move);
     }
     if (!halves_) stiffness_.correct(move_);
     return succeeds;
   }
 
-  /// Takes steps with the stiffness of the present position. Returns true if the steps reduced the distance
-  /// to the equilibrium or brought the droplet to rest, and if the droplet is still within farthest_rest of
-  /// the start.
+  /// Takes steps with the stiffness of the present position. Returns true on two conditions: the steps
+  /// reduced the distance to the equilibrium or ended at rest, and the droplet is still within farthest_rest
+  /// of the start.
   bool approach() {
     begun_at_ = position_;
     move_ = stiffness_.solve(force_);

@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/droplet/fire.cpp"
 #include <hwy/foreach_target.h>
-// The loops are plain; Highway compiles them for each of its targets.
+// The loops use no vector types; Highway compiles them for each of its targets.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();

@@ -4,7 +4,7 @@ namespace clog {
 namespace {
 
 /// Fractions of the support that wrapped obstacles give. Up to the first fraction, the droplet does not count
-/// as wrapped; from the second on, it counts as wrapped alone, and in between as hybrid.
+/// as wrapped. From the second fraction on, it counts as wrapped, and in between as hybrid.
 constexpr double squeezed_below = 1.0 / 3;
 constexpr double wrapped_above = 2.0 / 3;
 

@@ -17,7 +17,7 @@ double twice_area(const Eigen::Array2d& a, const Eigen::Array2d& b, const Eigen:
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// Whether a and b lie strictly on different sides of the line through c and d.
+/// Whether a and b are strictly on different sides of the line through c and d.
 bool separates(const Eigen::Array2d& c, const Eigen::Array2d& d, const Eigen::Array2d& a,
                const Eigen::Array2d& b) {
   const double side_a = twice_area(c, d, a);
@@ -87,8 +87,8 @@ int num_self_crossings(const Eigen::ArrayXd& position) {
   const int n = static_cast<int>(position.size() / 2);
   const auto x = position.head(n);
   const auto y = position.tail(n);
-  // Edges are sorted by their lower ends along the longer side of the contour, because few edges overlap
-  // there.
+  // Edges are sorted by their lower ends along the longer side of the contour's bounding box. Along this
+  // side, few edges overlap.
   const bool is_wide = x.maxCoeff() - x.minCoeff() > y.maxCoeff() - y.minCoeff();
   const double* along = is_wide ? position.data() : position.data() + n;
   const double* across = is_wide ? position.data() + n : position.data();

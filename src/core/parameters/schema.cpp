@@ -185,6 +185,7 @@ struct Facts {
   std::vector<std::string> words = {};  ///< the allowed words, if not all words of the type
   ParameterValue elsewhere = {};
   ParameterValue before = {};
+  ParameterValue (*compared)(const RunParameters&) = nullptr;
 };
 
 /// @param Member  a function without state, from the parameters of a run (const or not) to a reference to the
@@ -207,6 +208,7 @@ Parameter entry(const char* key, Member, const Facts& facts) {
       .shapes_array = facts.shapes_array,
       .elsewhere = facts.elsewhere,
       .before = facts.before,
+      .compared = facts.compared,
       .kind = Outside<T>::kind,
       .words = facts.words.empty() ? Outside<T>::words() : facts.words,
       .get = [](const RunParameters& run) { return Outside<T>::get(Member{}(run)); },
@@ -217,6 +219,16 @@ Bound from(double value, const char* reason, const char* remedy) { return {value
 Bound to(double value, const char* reason, const char* remedy) { return {value, true, reason, remedy}; }
 Bound above(double value, const char* reason, const char* remedy) { return {value, false, reason, remedy}; }
 Bound below(double value, const char* reason, const char* remedy) { return {value, false, reason, remedy}; }
+
+/// K_l/Gamma, to nine digits because the ratio has round-off, for springs whose automatic stiffness is
+/// proportional to Gamma; unset for other springs.
+ParameterValue ratio_to_line_tension(const RunParameters& run) {
+  const DpParameters& dp = run.dp;
+  if (dp.perimeter_spring != PerimeterSpring::rest || !dp.perimeter_stiffness || dp.line_tension <= 0)
+    return {};
+  constexpr double figures = 1e9;
+  return std::round(figures * *dp.perimeter_stiffness / dp.line_tension) / figures;
+}
 
 const Bound positive = above(0, "must be positive", "use a value above 0");
 const Bound not_negative = from(0, "must not be negative", "use 0 or more");
@@ -239,8 +251,8 @@ std::vector<Parameter> droplet_entries() {
             {.column = "wall_stiffness",
              .symbol = "E_w",
              .unit = "g rho sigma^3",
-             .meaning = "E_w, stiffness of contact; auto (dp only): the largest stiffness that is stable "
-                        "with time-step and vertices",
+             .meaning = "E_w, stiffness of contact; auto (dp only): the largest stiffness with which the "
+                        "integration is stable",
              .automatic_in = &polygons,
              .automatic_order = 3,
              .range = {positive, {}},
@@ -278,19 +290,20 @@ std::vector<Parameter> array_entries() {
                        below(1, "the smallest obstacles would have no diameter", "use less than 1")},
              .shapes_array = true,
              .elsewhere = 0.0}),
-      entry("obstacle-density", [](auto& run) -> auto& { return run.obstacles.density; },
-            {.column = "obstacle_density",
-             .symbol = R"(\rho_\mathrm{ob})",
-             .unit = "1/sigma^2",
-             .meaning =
-                 "obstacles per area, or a share of the mean density of saturated arrays; saturated: "
-                 "as many obstacles as fit. A density that is too high for the array of a seed is refused",
-             .scope = &arrays,
-             .automatic_in = &arrays,
-             .range = {positive, {}},
-             .has_own_column = false,
-             .shapes_array = true,
-             .words = {"saturated"}}),
+      entry(
+          "obstacle-density", [](auto& run) -> auto& { return run.obstacles.density; },
+          {.column = "obstacle_density",
+           .symbol = R"(\rho_\mathrm{ob})",
+           .unit = "1/sigma^2",
+           .meaning =
+               "number of obstacles per area, or a share of the mean density of saturated arrays; saturated: "
+               "as many obstacles as fit; a density that the array of some seed cannot reach is refused",
+           .scope = &arrays,
+           .automatic_in = &arrays,
+           .range = {positive, {}},
+           .has_own_column = false,
+           .shapes_array = true,
+           .words = {"saturated"}}),
       entry("obstacle-layout", [](auto& run) -> auto& { return run.obstacles.layout; },
             {.column = "obstacle_filling",
              .meaning =
@@ -322,8 +335,9 @@ std::vector<Parameter> own_circle_entries() {
             {.column = "length",
              .symbol = R"(L_x)",
              .unit = "sigma",
-             .meaning = "length along the flow after which user-supplied circles repeat; 0: boxes*box. For "
-                        "triangular and rhombic lattices: upper limit of the period along the flow; 0: box",
+             .meaning =
+                 "length along the flow after which user-supplied circles repeat; 0: boxes*box. For "
+                 "triangular and rhombic lattices, it is the largest allowed period along the flow; 0: box",
              .role = numerics,
              .scope = &lengths,
              .range = {not_negative, to(1e7, "no droplet travels so far", "use at most 1e7")},
@@ -340,8 +354,8 @@ std::vector<Parameter> own_circle_entries() {
             {.column = "entrance",
              .symbol = R"(x_\mathrm{in})",
              .unit = "sigma",
-             .meaning = "x of the line on which release=entrance places droplets; if the place is not free, "
-                        "the droplet starts in the nearest void",
+             .meaning = "x of the line on which release=entrance places droplets; a droplet whose place is "
+                        "not free starts in the nearest void",
              .scope = &own_circles,
              .range = {not_negative, {}},
              .shapes_array = true,
@@ -368,8 +382,8 @@ std::vector<Parameter> own_circle_entries() {
             {.column = "exit",
              .symbol = R"(x_\mathrm{out})",
              .unit = "sigma",
-             .meaning = "x at which a droplet has passed user-supplied circles and its run ends; 0: there is "
-                        "no exit, the circles repeat",
+             .meaning = "x at which a droplet has passed the user-supplied circles, so that its run ends; 0: "
+                        "there is no exit, and the circles repeat",
              .scope = &own_circles,
              .range = {not_negative, {}},
              .before = 0.0}),
@@ -410,16 +424,16 @@ std::vector<Parameter> channel_entries() {
             {.column = "start",
              .symbol = "h_0",
              .unit = "sigma",
-             .meaning = "h of the droplet's centre at release: distance from the line through the wedges' "
-                        "tips, negative upstream",
+             .meaning = "position h of the droplet's centre at release; h counts from the line through the "
+                        "wedges' tips and is negative upstream",
              .scope = &channels,
              .range = {from(-100, "the approach would take most of the time", "try -10"), {}}}),
       entry("end", [](auto& run) -> auto& { return run.channel.end; },
             {.column = "end",
              .symbol = "h_1",
              .unit = "sigma",
-             .meaning =
-                 "h of the droplet's centre at which the droplet has passed the channel and its run ends",
+             .meaning = "position h of the droplet's centre at which the run ends, because the droplet has "
+                        "passed the channel",
              .scope = &channels,
              .range = {{}, to(100, "the path behind the orifice would take most of the time", "try 3")}}),
   };
@@ -430,9 +444,9 @@ std::vector<Parameter> period_entries() {
   return {
       entry("lattice", [](auto& run) -> auto& { return run.obstacles.lattice; },
             {.column = "obstacle_filling",
-             .meaning =
-                 "square or triangular, turned by lattice-angle; rhombic: columns of posts across the flow, "
-                 "each shifted by pitch*tan(lattice-angle), as in deterministic lateral displacement",
+             .meaning = "square or triangular lattices are turned by lattice-angle; rhombic: columns of "
+                        "posts across the flow, each shifted by pitch*tan(lattice-angle) relative to the "
+                        "previous one, as in deterministic lateral displacement",
              .scope = &lattices,
              .has_own_column = false,
              .shapes_array = true}),
@@ -440,7 +454,8 @@ std::vector<Parameter> period_entries() {
             {.column = "obstacle_gap",
              .symbol = "a",
              .unit = "sigma",
-             .meaning = "distance of neighbouring centres in a lattice; 0: obstacle-gap + obstacle-diameter",
+             .meaning =
+                 "distance between neighbouring centres in a lattice; 0: obstacle-gap + obstacle-diameter",
              .scope = &lattices,
              .range = {not_negative, {}},
              .has_own_column = false,
@@ -457,7 +472,7 @@ std::vector<Parameter> period_entries() {
              .shapes_array = true}),
       entry("seeds", [](auto& run) -> auto& { return run.seed; },
             {.column = "seed",
-             .meaning = "one run for each seed, which determines obstacles and place of release",
+             .meaning = "one run for each seed; the seed determines the obstacles and the place of release",
              .role = ensemble,
              .scope = &arrays,
              .range = {from(0, "a seed is not negative", "use 0..4294967295"),
@@ -469,7 +484,7 @@ std::vector<Parameter> period_entries() {
              .symbol = "L",
              .unit = "sigma",
              .meaning = "period of the obstacle array across the flow and, with boxes=1, along the flow; for "
-                        "lattices an upper limit of the period",
+                        "lattices, the largest allowed period",
              .role = numerics,
              .scope = &arrays,
              .range = {from(1, "such a box has no room for a droplet",
@@ -479,8 +494,8 @@ std::vector<Parameter> period_entries() {
       entry("boxes", [](auto& run) -> auto& { return run.obstacles.boxes; },
             {.column = "boxes",
              .symbol = R"(n_\mathrm{box})",
-             .meaning = "number of boxes along the flow after which the array repeats. With "
-                        "terminal-speed*max-time/box boxes or more, no droplet reaches the repetition",
+             .meaning = "number of boxes along the flow after which the array repeats; no droplet reaches "
+                        "the repetition if this number is at least terminal-speed*max-time/box",
              .role = numerics,
              .scope = &arrays,
              .range = {from(1, "it is the number of boxes along the flow after which the array repeats",
@@ -509,15 +524,15 @@ std::vector<Parameter> motion_entries() {
              .meaning = "V_t, terminal speed of the droplet far from obstacles",
              .range = {positive, to(100, "the droplet would cross many boxes before drag matters",
                                     "use at most 100")}}),
-      entry(
-          "near-wall-drag", [](auto& run) -> auto& { return run.drag.near_wall; },
-          {.column = "near_wall_drag",
-           .symbol = R"(b_0/b_\infty)",
-           .meaning = "b_0/b_inf, extra drag at one diameter from a wall, divided by the drag far from walls",
-           .scope = &polygons,
-           .range = {not_negative,
-                     to(1000, "near-wall drag would stop the droplet everywhere", "use at most 1000")},
-           .elsewhere = 0.0}),
+      entry("near-wall-drag", [](auto& run) -> auto& { return run.drag.near_wall; },
+            {.column = "near_wall_drag",
+             .symbol = R"(b_0/b_\infty)",
+             .meaning = "b_0/b_inf: extra drag at a distance of one diameter from a wall, divided by the "
+                        "drag far from walls",
+             .scope = &polygons,
+             .range = {not_negative,
+                       to(1000, "near-wall drag would stop the droplet everywhere", "use at most 1000")},
+             .elsewhere = 0.0}),
       entry("near-wall-exponent", [](auto& run) -> auto& { return run.drag.near_wall_exponent; },
             {.column = "near_wall_exponent",
              .symbol = R"(\alpha)",
@@ -564,8 +579,8 @@ std::vector<Parameter> interface_entries() {
       entry("inertia", [](auto& run) -> auto& { return run.dp.inertia; },
             {.column = "inertia",
              .symbol = "S",
-             .meaning = "S, inertial mass divided by the droplet's mass; S changes neither weight nor drag, "
-                        "and the automatic time-step is proportional to sqrt(S)",
+             .meaning = "factor S that multiplies the inertial mass, but neither weight nor drag; the "
+                        "automatic time-step is proportional to sqrt(S)",
              .role = numerics,
              .scope = &polygons,
              .range = {from(0.01, "time steps would be needlessly short", "use 0.01..16"),
@@ -610,7 +625,8 @@ std::vector<Parameter> interface_entries() {
              .scope = &polygons,
              .automatic_in = &polygons,
              .range = {not_negative, {}},
-             .words = {"auto"}}),
+             .words = {"auto"},
+             .compared = ratio_to_line_tension}),
       entry("perimeter-stiffness-ratio", [](auto& run) -> auto& { return run.dp.perimeter_stiffness_ratio; },
             {.column = "perimeter_stiffness",
              .symbol = R"(K_l/\Gamma)",
@@ -646,9 +662,9 @@ std::vector<Parameter> wall_entries() {
       entry("wall-tension", [](auto& run) -> auto& { return run.dp.wall_tension; },
             {.column = "wall_tension",
              .symbol = R"(\Gamma_\mathrm{w}/\Gamma)",
-             .meaning = "tension of the interface on walls, divided by Gamma; it is minus the cosine of "
-                        "Young's contact angle; auto: minus the mean cosine of receding-angle and "
-                        "advancing-angle if both are given, otherwise 1",
+             .meaning = "tension of the interface that covers walls, divided by Gamma; equal to -cos(Young's "
+                        "contact angle); auto: minus the mean cosine of receding-angle and advancing-angle "
+                        "if both are given, otherwise 1",
              .scope = &polygons,
              .range = {from(0.1, "below 0.1 the interface on a wall would buckle", "use 0.1..1"),
                        to(1, "it is minus the cosine of the contact angle", "use 0.1..1")},
@@ -709,13 +725,12 @@ std::vector<Parameter> self_contact_entries() {
              .unit = "sigma",
              .meaning = "distance below which the interface repels itself",
              .scope = &polygons,
-             .range = {positive,
-                       to(0.1, "this is the smallest thickness of the droplet, which could then not fold",
-                          "use at most 0.1")}}),
+             .range = {positive, to(0.1, "the droplet could not get thinner than this, so it could not fold",
+                                    "use at most 0.1")}}),
       entry("film-friction", [](auto& run) -> auto& { return run.dp.film_friction; },
             {.column = "film_friction",
-             .meaning = "whether wall friction also acts, through a closed film, on the interface above this "
-                        "film; auto: on with friction and self-contact",
+             .meaning = "whether a closed film transmits wall friction to the interface above it; auto: on "
+                        "with friction and self-contact",
              .scope = &polygons,
              .automatic_in = &polygons,
              .before = name(FilmFriction::off)}),
@@ -733,7 +748,7 @@ std::vector<Parameter> verdict_entries() {
       entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },
             {.column = "clog_energy",
              .symbol = "E_k/E_t",
-             .meaning = "a droplet is clogged when its kinetic energy stays below this fraction of the "
+             .meaning = "a droplet is clogged when its kinetic energy stays below this fraction of its "
                         "kinetic energy at terminal speed",
              .role = numerics,
              .range = {above(0, "the kinetic energy never becomes exactly 0", "try 1e-17"),
@@ -748,18 +763,44 @@ std::vector<Parameter> verdict_entries() {
             {.column = "dwell_length",
              .symbol = R"(\delta_\mathrm{d})",
              .unit = "sigma",
-             .meaning = "a droplet that advances by at most this length rests (this is called a dwell); the "
-                        "dwell columns record for how long it rests",
+             .meaning = "a droplet rests (dwells) while it advances by at most this length; the dwell "
+                        "columns record for how long",
              .role = numerics,
-             .range = {positive, to(0.5, "a droplet that hangs on an obstacle moves less", "try 0.05")}}),
+             .range = {positive,
+                       to(0.5, "a droplet that hangs on an obstacle moves less than this", "try 0.05")}}),
       entry("break-up-neck", [](auto& run) -> auto& { return run.dp.break_up_neck; },
             {.column = "break_up_neck",
              .symbol = R"(w_\mathrm{b})",
              .unit = "sigma",
-             .meaning = "a droplet has broken up, and its run ends, when a neck between two lobes is "
-                        "narrower than this width; 0: droplets never break up",
+             .meaning = "a droplet has broken up when a neck between two of its lobes is narrower than this "
+                        "width; 0: droplets never break up",
              .scope = &polygons,
-             .range = {not_negative, to(0.5, "an unbroken droplet in a gap is as narrow", "try 0.05")}}),
+             .range = {not_negative,
+                       to(0.5, "a droplet in a gap may be this narrow without breaking up", "try 0.05")}}),
+      entry(
+          "break-up", [](auto& run) -> auto& { return run.dp.break_up; },
+          {.column = "break_up",
+           .meaning =
+               "end: a run ends when its droplet breaks up; daughters: the run continues with all daughters",
+           .scope = &polygons,
+           .before = "end"}),
+      entry("smallest-daughter", [](auto& run) -> auto& { return run.dp.smallest_daughter; },
+            {.column = "smallest_daughter",
+             .symbol = "d_0",
+             .unit = "sigma",
+             .meaning = "daughters of a smaller diameter are counted, but not followed",
+             .scope = &polygons,
+             .range = {from(0.05, "its step would be much shorter", "try 0.2"),
+                       to(0.7, "the smaller of two daughters has at most a diameter of 0.71", "try 0.2")},
+             .before = 0.2}),
+      entry("speed-exponent", [](auto& run) -> auto& { return run.drag.speed_exponent; },
+            {.column = "speed_exponent",
+             .symbol = "n",
+             .meaning = "exponent n: the terminal speed of a daughter of diameter d (ancestor: 1) is d^n "
+                        "times that of its ancestor",
+             .scope = &polygons,
+             .range = {not_negative, to(2, "no drag gives a larger exponent", "try 1")},
+             .before = 0.0}),
   };
 }
 

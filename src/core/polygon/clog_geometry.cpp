@@ -20,8 +20,8 @@ struct Polygon {
   Eigen::Array2d vertex(Eigen::Index i) const { return {position[i], position[size() + i]}; }
   double length(Eigen::Index edge) const { return (vertex(next(edge)) - vertex(edge)).matrix().norm(); }
 
-  /// Wherever the contour crosses the line on which coordinate `axis` equals `value`, calls visit() with the
-  /// other coordinate.
+  /// Calls visit() for every place where the contour crosses the line on which coordinate `axis` equals
+  /// `value`. The argument is the other coordinate.
   template <class Visit>
   void visit_crossings(int axis, double value, Visit visit) const {
     for (Eigen::Index i = 0; i < size(); ++i) {
@@ -72,17 +72,17 @@ bool hangs_over(const Polygon& polygon, const Post& post) {
   return left && right;
 }
 
-/// A touched obstacle, a post or a wall. The support is the force of all its overlaps on the droplet against
+/// A touched obstacle, either a post or a wall. The support is the sum of its forces on the droplet against
 /// the flow, divided by the contact's stiffness [sigma].
 struct Touched {
   double support = 0;
   bool is_wrapped = false;
   std::vector<Obstacle> circles;  ///< the circles of a post
   std::optional<Wedge> wall;
-  double longest_link = 0;  ///< longest touching edge divided by the radius at which it lies; 0 for walls
+  double longest_link = 0;  ///< longest touching edge divided by its distance from the centre; 0 for walls
 };
 
-/// Share of the support from which on a wrapped obstacle counts among the carriers.
+/// Smallest share of the support for which a wrapped obstacle counts as a carrier.
 constexpr double least_share = 0.1;
 
 /// Finds the obstacle that each edge overlaps most (-1: none), and all touched obstacles.
@@ -124,8 +124,8 @@ class Contacts {
     bool is_touched = false;
     for (Eigen::Index i = 0; i < polygon.size(); ++i) {
       const Eigen::Array2d begin = polygon.vertex(i), end = polygon.vertex(polygon.next(i));
-      // The point of the edge closest to a flank is one of its ends; the point closest to the tip may be
-      // between them.
+      // The point of the edge closest to a flank is an end of the edge. The point closest to the tip may be
+      // between the ends.
       const auto distance = [&](const Eigen::Array2d& place) {
         return distance_to(wall, place - wall.centre());
       };
@@ -150,7 +150,7 @@ class Contacts {
   std::vector<int> of_edge_;
   std::vector<double> deepest_;
 
-  /// The overlap of an edge with a circle, and the part of it along the flow [sigma].
+  /// The overlap of an edge with a circle, and the component of the overlap along the flow [sigma].
   struct Overlap {
     double size, along;
   };
@@ -175,8 +175,8 @@ class Contacts {
   }
 };
 
-/// Whether one of two obstacles is a wall and the other a post that overlaps this wall, so that there is no
-/// gap between them.
+/// Whether one of two obstacles is a wall and the other a post that overlaps this wall. There is then no gap
+/// between them.
 bool overlap(const Touched& one, const Touched& other) {
   if (!one.wall) return other.wall && overlap(other, one);
   return std::ranges::any_of(other.circles, [&](const Obstacle& circle) {
@@ -251,8 +251,8 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
     const Arc& to = arcs[(i + 1) % arcs.size()];
     if (from.obstacle == to.obstacle) continue;
     if (overlap(contacts.touched()[from.obstacle], contacts.touched()[to.obstacle])) continue;
-    // One of the two obstacles must support the droplet. The other may push the droplet across the flow, or
-    // even a little downstream; it is a side of the gap all the same.
+    // One of the two obstacles must support the droplet. The other counts as a side of the gap even if it
+    // pushes the droplet across the flow or a little downstream.
     const std::vector<Touched>& touched = contacts.touched();
     if (std::max(touched[from.obstacle].support, touched[to.obstacle].support) <= 0) continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.

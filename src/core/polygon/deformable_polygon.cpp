@@ -35,8 +35,8 @@ Eigen::ArrayXd free_polygon(const RunParameters& run) {
       run.dp.perimeter_spring == PerimeterSpring::rest ? run.dp.perimeter_stiffness.value() * n : 0;
   const double rest_edge = units::regular_edge_length(n);
   // K_a (a_0 - a) = T dP/da, with T the tension of an edge and dP/da = P/(2a). The correction is small, so
-  // the iteration converges at once. If the area is not stiffer than the tension there is no such state, and
-  // the result is half of a_0.
+  // the iteration converges at once. There is no such state if the area is not stiffer than the tension. The
+  // result is then half of a_0.
   double area = units::rest_area;
   for (int i = 0; i < 50; ++i) {
     const double edge = units::regular_edge_length(n, area);
@@ -55,8 +55,8 @@ ContactReach contact_reach_of_polygon(const RunParameters& run) {
   return {.range = run.dp.contact_range.value(), .by_edges = run.dp.wall_contact == WallContact::edge};
 }
 
-/// Upper bound of the energy of a released interface. The bound is generous: among obstacles the interface is
-/// hardly twice as long as a circle.
+/// Upper bound of the energy of a released interface. The bound is far from tight: among obstacles the
+/// interface is hardly twice as long as a circle.
 double energy_of_interface(const RunParameters& run) {
   constexpr double excess_perimeter = 20;  // [sigma]
   const double spring =
@@ -110,12 +110,13 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   const EquilibriumForces asked = forces_along_interface(run, rest_forces);
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
-  // Springs tie the droplet to walls, with anchors that stay fixed during a search. A wall whose limit is
-  // exceeded then exerts its largest force, wherever the droplet moves. Searches are repeated until every
-  // wall bears its force.
+  // Springs tie the droplet to walls. Their anchors stay fixed during a search. A wall that has yielded
+  // exerts its largest force, wherever the droplet moves. The search is repeated, at most most_yields times,
+  // until every wall can bear the force that it has to exert.
   constexpr int most_yields = 20;
-  // If all walls can bear their forces, the excess after this many yields is below the first excess
-  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above, even after most_yields.
+  // If all walls can hold, the excess after this many yields is below the first excess
+  // (docs/notes/2026-11-25-searches-with-friction.md). Otherwise it stays far above the first excess, even
+  // after most_yields.
   constexpr int yields_until_excess_has_fallen = 12;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
   WallTouches touches(run, obstacles);
@@ -145,7 +146,7 @@ Stability stability_of_polygon(const RunParameters& run, const ObstacleArray& ob
   return stability_of(forces_along_interface(run, rest_forces), state);
 }
 
-/// @param circles  that carry the droplet
+/// @param circles  those that carry the droplet
 double friction_use(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state,
                     std::span<const Obstacle> circles) {
   DpForces forces(run, obstacles);
@@ -163,7 +164,7 @@ Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, c
 }
 
 double neck_of_polygon(const DropletState& state, double below) {
-  return thinnest_neck(state.position, below);
+  return thinnest_neck(state.position, below).width;
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace clog {
 namespace {
 
-/// A part of the droplet is a lobe if a circle of its area is at least this many times as wide as the neck. A
-/// chord cuts off from a circle at most half of the area of a circle as wide as the chord, which is too
+/// A part of the droplet is a lobe if a circle of equal area is at least this many times as wide as the neck.
+/// A chord of a circle cuts off at most half the area of a circle with this chord as diameter. This is too
 /// little for a lobe.
 constexpr double lobe_width = 2;
 /// A lobe also has at least this fraction of the droplet's area. A smaller part is only a bead: retracting
@@ -17,10 +17,10 @@ constexpr double lobe_width = 2;
 constexpr double lobe_share = 0.02;
 
 /// Largest cosine of an angle that counts as a right angle. Across a bridge with straight sides, all segments
-/// are equally long; without this tolerance, round-off would decide which of them is the shortest.
+/// are equally long. Without this tolerance, round-off would decide which segment is the shortest.
 constexpr double round_off = 1e-9;
-/// Whether a value, which is a cosine or sine times two lengths, is at most the round-off. Takes the squares
-/// of the lengths, to avoid square roots.
+/// Whether a value is at most the round-off. The value is the product of a cosine or sine and two lengths.
+/// The squares of the lengths are given, to avoid square roots.
 bool is_hardly_positive(double value, double squared_lengths) {
   return value <= 0 || value * value <= round_off * round_off * squared_lengths;
 }
@@ -31,7 +31,7 @@ double dot(const Array2d& a, const Array2d& b) { return a[0] * b[0] + a[1] * b[1
 double cross(const Array2d& a, const Array2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 double length(const Array2d& a) { return std::sqrt(dot(a, a)); }
 
-/// Whether a segment gets no shorter when its end moves a bit along this edge.
+/// Whether a segment does not get shorter when its end moves a little along this edge.
 bool leads_away(const Array2d& segment, const Array2d& edge) {
   return is_hardly_positive(dot(segment, edge), dot(segment, segment) * dot(edge, edge));
 }
@@ -103,7 +103,7 @@ Foot foot_on(const Outline& outline, Eigen::Index edge, const Array2d& from) {
   return {edge, place, begin + place * along};
 }
 
-/// Whether the segment gets no shorter when either of its ends moves along the outline.
+/// Whether the segment does not get shorter when either of its ends moves along the outline.
 bool is_local_minimum(const Outline& outline, Eigen::Index vertex, const Foot& foot) {
   const Array2d there = foot.point - outline.vertex(vertex), back = -there;
   return leads_away(there, outline.edge(vertex)) &&
@@ -142,8 +142,8 @@ struct Run {
     const Array2d away = (low - point).max(point - high).max(0);
     return dot(away, away);
   }
-  /// Whether the rectangle contains a point to which the segment from `point` makes no acute angle with
-  /// `edge`.
+  /// Whether the rectangle contains a point for which the segment from `point` to it makes no acute angle
+  /// with `edge`.
   /// @param tolerance  round-off times the edge's length
   bool reaches_behind(const Array2d& point, const Array2d& edge, double tolerance) const {
     const double x = edge[0] > 0 ? low[0] : high[0];
@@ -167,39 +167,40 @@ std::vector<Run> runs_of_edges(const Outline& outline) {
   return runs;
 }
 
-/// The width of the thinnest neck from a vertex to these edges, at most `below`.
-double thinnest_neck_to(const Outline& outline, Eigen::Index vertex, const Run& run, double below) {
+/// Searches these edges for a neck from `vertex` that is thinner than `thinnest`, and replaces `thinnest` by
+/// it.
+void look_for_neck(const Outline& outline, Eigen::Index vertex, const Run& run, Neck& thinnest) {
   const Array2d from = outline.vertex(vertex);
-  double thinnest = below;
   for (Eigen::Index edge = run.first; edge < run.last; ++edge) {
     if (edge == vertex || outline.next(edge) == vertex) continue;
     const Foot foot = foot_on(outline, edge, from);
     const Array2d there = foot.point - from;
-    if (dot(there, there) >= thinnest * thinnest || !is_local_minimum(outline, vertex, foot)) continue;
+    if (dot(there, there) >= thinnest.width * thinnest.width || !is_local_minimum(outline, vertex, foot))
+      continue;
     const double width = length(there);
-    if (parts_are_lobes(outline, vertex, foot, width) && lies_inside(outline, vertex, foot)) thinnest = width;
+    if (parts_are_lobes(outline, vertex, foot, width) && lies_inside(outline, vertex, foot))
+      thinnest = {.width = width, .vertex = vertex, .edge = edge, .place = foot.place};
   }
-  return thinnest;
 }
 
 }  // namespace
 
-double thinnest_neck(const Eigen::ArrayXd& position, double below) {
+Neck thinnest_neck(const Eigen::ArrayXd& position, double below) {
   const Outline outline(position);
   const std::vector<Run> runs = runs_of_edges(outline);
   const double bound = std::min(below, (1 + round_off) * widest_neck(outline));
-  double thinnest = bound;
+  Neck thinnest{.width = bound};
   for (Eigen::Index vertex = 0; vertex < outline.size(); ++vertex) {
     if (!outline.turns_inwards(vertex)) continue;
     const Array2d from = outline.vertex(vertex);
     const Array2d go = outline.edge(vertex), come = -outline.edge(outline.before(vertex));
     const double tolerance = round_off * std::max(length(go), length(come));
     for (const Run& run : runs)
-      if (run.squared_distance(from) < thinnest * thinnest && run.reaches_behind(from, go, tolerance) &&
-          run.reaches_behind(from, come, tolerance))
-        thinnest = thinnest_neck_to(outline, vertex, run, thinnest);
+      if (run.squared_distance(from) < thinnest.width * thinnest.width &&
+          run.reaches_behind(from, go, tolerance) && run.reaches_behind(from, come, tolerance))
+        look_for_neck(outline, vertex, run, thinnest);
   }
-  return thinnest < bound ? thinnest : std::numeric_limits<double>::infinity();
+  return thinnest.width < bound ? thinnest : Neck();
 }
 
 }  // namespace clog

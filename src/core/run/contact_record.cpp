@@ -10,7 +10,7 @@ namespace {
 
 /// Positions of one obstacle in two frames differ by less than this, because of round-off [sigma].
 constexpr double same_place = 1e-6;
-/// Additional distance up to which obstacles are listed, so that lists are seldom renewed [sigma].
+/// Additional distance up to which obstacles are listed, so that lists are seldom rebuilt [sigma].
 constexpr double skin = 0.25;
 
 /// Distance from a point to the segment between two others [sigma].
@@ -79,8 +79,8 @@ void ContactRecord::look_around(const DropletState& state, const ObstacleArray& 
   lower_ = lower - skin;
   upper_ = upper + skin;
   near_.clear();
-  // The list also contains obstacles just out of reach, so that the loop below detects which ones the droplet
-  // left.
+  // The list also contains obstacles just out of reach. With them, the loop below detects which obstacles the
+  // droplet has left.
   obstacles.gather(
       {origin_[0], origin_[1], lower_[0], upper_[0], lower_[1], upper_[1], reach_.range + parting + 2 * skin},
       near_);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -17,14 +18,14 @@
 namespace clog {
 namespace {
 
-/// Until it has had time to fall, a released droplet is as slow as a clogged one.
+/// A released droplet is at first as slow as a clogged one.
 constexpr double relaxation_times_before_a_clog = 10;
 
-/// E_k/E_t below which the program searches for an equilibrium. The droplet must also be so slow that it
-/// coasts at most the distance farthest_rest within the relaxation time.
+/// E_k/E_t below which the program searches for an equilibrium. The droplet must also be so slow that,
+/// without forces, it would move at most the distance farthest_rest within the relaxation time.
 double first_search(const RunParameters& run) {
   constexpr double slow = 1e-4;
-  // While walls with friction yield, a droplet may creep, come free and move on, which no search predicts
+  // While walls with friction yield, a droplet may creep, get free and move on. No search predicts this
   // (docs/notes/2026-11-25-searches-with-friction.md).
   constexpr double slow_with_friction = 1e-10;
   const bool has_friction = run.dp.friction > 0 || run.dp.yield_traction > 0;
@@ -36,13 +37,13 @@ constexpr double fall_between_searches = 0.1;
 /// If E_k/E_t rises above this multiple of the limit for the first search, this limit applies again.
 constexpr double rise_of_a_moving_droplet = 10;
 
-/// A droplet that has stopped in an unstable balance is looked at again when E_k/E_t has changed by this
-/// factor.
+/// The stability of a droplet that has stopped in an unstable balance is tested again when E_k/E_t has
+/// changed by this factor.
 constexpr double change_between_looks = 10;
 
-/// The run looks for crossings of the interface once in this number of steps, which takes less than 1 % of
-/// its time. No crossing is missed, because parts of the interface that crossed stay crossed. The sound
-/// distance is that of the last of these checks.
+/// The run tests for crossings of the interface once in this number of steps. The tests take less than 1 % of
+/// the run's time. They miss no crossing, because parts of the interface that crossed stay crossed. The sound
+/// distance is that of the last of these tests.
 constexpr std::int64_t steps_per_crossing_check = std::int64_t{32} * DropletRun::steps_per_check;
 
 /// Change this whenever the content of a snapshot changes.
@@ -56,16 +57,16 @@ bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
 }
 
 /// Twice the distance that a droplet falls without obstacles [sigma].
-double farthest_way(const RunParameters& run) { return 2 * run.drag.terminal_speed * run.max_time; }
+double farthest_distance(const RunParameters& run) { return 2 * run.drag.terminal_speed * run.max_time; }
 
-/// Checks a snapshot's state before anything is computed with it.
+/// Checks the state in a snapshot before anything is computed with it.
 void check_state(const DropletState& state, const RunParameters& run, const ObstacleArray& obstacles) {
   const Period& period = obstacles.period();
   if (state.size() != model_of(run).num_points(run) || state.velocity.size() != state.position.size() ||
       state.frame.period[0] != period.along() || state.frame.period[1] != period.across())
     throw Error("the snapshot is of another run");
-  const bool is_placed =
-      (state.position.abs() < burst_perimeter).all() && is_in_range(state.frame, period, farthest_way(run));
+  const bool is_placed = (state.position.abs() < burst_perimeter).all() &&
+                         is_in_range(state.frame, period, farthest_distance(run));
   const double fastest = std::sqrt(diverged_energy_ratio * static_cast<double>(state.size()));
   const bool is_moving = (state.velocity.abs() < fastest * run.drag.terminal_speed).all();
   const auto num_wedges = static_cast<Eigen::Index>(obstacles.wedges().size());
@@ -89,17 +90,17 @@ DropletRun::DropletRun(const RunParameters& run)
 
 DropletRun::DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles)
     : DropletRun(run, obstacles, scene_of(run).release(run, *obstacles)) {
-  end_ = scene_of(run).way(run, start_frame_.global(start_));
+  end_ = scene_of(run).passing_distance(run, start_frame_.global(start_));
 }
 
 DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles,
-                       DropletState initial, double way)
+                       DropletState initial, double passing_distance)
     : run_(std::move(run)),
       obstacles_(std::move(obstacles)),
       droplet_(model_of(run_).make(run_, *obstacles_, std::move(initial))),
       start_frame_(droplet_->state().frame),
       start_(droplet_->centre()),
-      end_(way),
+      end_(passing_distance),
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
       first_quiet_time_(relaxation_times_before_a_clog * relaxation_time(run_)),
       next_search_(first_search(run_)),
@@ -127,14 +128,19 @@ bool DropletRun::advance(int num_checks) {
     steps_done_ += steps;
     check();
     if (status_ == RunStatus::running && steps_done_ % steps_per_snapshot == 0)
-      start_afresh_and_take_snapshot();
+      rebuild_lists_and_take_snapshot();
   }
   return status_ != RunStatus::running;
 }
 
-void DropletRun::start_afresh_and_take_snapshot() {
-  droplet_->start_afresh();
+void DropletRun::rebuild_lists_and_take_snapshot() {
+  droplet_->rebuild_lists();
   ByteWriter bytes;
+  save(bytes);
+  snapshot_ = bytes.take();
+}
+
+void DropletRun::save(ByteWriter& bytes) const {
   bytes.put(snapshot_kind);
   droplet_->save(bytes);
   start_frame_.save(bytes);
@@ -151,13 +157,12 @@ void DropletRun::start_afresh_and_take_snapshot() {
   contacts_.save(bytes);
   if (is_passage()) passage_.save(bytes);
   bytes.put(neck_);
-  snapshot_ = bytes.take();
 }
 
-DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
-                              std::span<const std::byte> snapshot) {
+DropletRun DropletRun::restore(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                               std::span<const std::byte> saved) {
   try {
-    ByteReader bytes(snapshot);
+    ByteReader bytes(saved);
     std::uint64_t kind = 0;
     bytes.get(kind);
     if (kind != snapshot_kind) throw Error("the snapshot is of another version");
@@ -165,39 +170,60 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     DropletState state;
     state.restore(bytes);
     check_state(state, run, *obstacles);
-    DropletRun resumed(run, std::move(obstacles), std::move(state));
-    resumed.droplet_->restore(rest);
-    resumed.start_frame_.restore(rest);
-    rest.get(resumed.start_);
-    resumed.end_ = scene_of(run).way(run, resumed.start_frame_.global(resumed.start_));
-    rest.get(resumed.steps_done_);
-    rest.get(resumed.quiet_checks_);
-    rest.get(resumed.balanced_at_);
-    rest.get(resumed.next_search_);
-    rest.get(resumed.sound_distance_);
-    rest.get(resumed.was_crossed_);
-    if (!resumed.is_in_range()) throw Error("its progress is out of range");
-    resumed.record_.restore(rest, resumed.time());
-    resumed.steady_.restore(rest);
-    resumed.dwells_.restore(rest);
-    resumed.contacts_.restore(rest);
-    if (resumed.is_passage()) resumed.passage_.restore(rest);
-    rest.get(resumed.neck_);
+    DropletRun restored(run, std::move(obstacles), std::move(state));
+    restored.droplet_->restore(rest);
+    restored.start_frame_.restore(rest);
+    rest.get(restored.start_);
+    restored.end_ = scene_of(run).passing_distance(run, restored.start_frame_.global(restored.start_));
+    rest.get(restored.steps_done_);
+    rest.get(restored.quiet_checks_);
+    rest.get(restored.balanced_at_);
+    rest.get(restored.next_search_);
+    rest.get(restored.sound_distance_);
+    rest.get(restored.was_crossed_);
+    if (!restored.is_in_range()) throw Error("its progress is out of range");
+    restored.record_.restore(rest, restored.time());
+    restored.steady_.restore(rest);
+    restored.dwells_.restore(rest);
+    restored.contacts_.restore(rest);
+    if (restored.is_passage()) restored.passage_.restore(rest);
+    rest.get(restored.neck_);
     if (!rest.at_end()) throw Error("the snapshot is of another run");
-    resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
-    return resumed;
+    return restored;
   } catch (const std::out_of_range&) {
     throw Error("the snapshot is torn");
   }
 }
 
-/// Checks what a snapshot contains besides the droplet itself.
+DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                              std::span<const std::byte> snapshot) {
+  DropletRun resumed = restore(run, std::move(obstacles), snapshot);
+  if (resumed.steps_done_ % steps_per_snapshot != 0) throw Error("its progress is out of range");
+  resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
+  return resumed;
+}
+
+std::vector<std::byte> DropletRun::state_at_break_up() const {
+  assert(status_ == RunStatus::broken);
+  ByteWriter bytes;
+  save(bytes);
+  return bytes.take();
+}
+
+DropletRun DropletRun::broken(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                              std::span<const std::byte> state_at_break_up) {
+  DropletRun broken = restore(run, std::move(obstacles), state_at_break_up);
+  if (!(broken.neck_.width < run.dp.break_up_neck)) throw Error("the droplet has not broken up");
+  broken.status_ = RunStatus::broken;
+  return broken;
+}
+
+/// Checks the contents of a snapshot except the droplet itself.
 bool DropletRun::is_in_range() const {
   return (start_.abs() < burst_perimeter).all() &&
-         clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
-         std::abs(sound_distance_) <= farthest_way(run_) + obstacles_->period().along() &&
-         steps_done_ <= max_steps_ && steps_done_ % steps_per_snapshot == 0 && quiet_checks_ >= 0 &&
-         quiet_checks_ <= steps_done_ / steps_per_check &&
+         clog::is_in_range(start_frame_, obstacles_->period(), farthest_distance(run_)) && steps_done_ > 0 &&
+         std::abs(sound_distance_) <= farthest_distance(run_) + obstacles_->period().along() &&
+         steps_done_ <= max_steps_ && quiet_checks_ >= 0 && quiet_checks_ <= steps_done_ / steps_per_check &&
          !(balanced_at_ < 0 || balanced_at_ >= run_.clog_energy) && next_search_ > 0 &&
          std::isfinite(next_search_) && kinetic_energy_ratio() < diverged_energy_ratio;
 }
@@ -241,7 +267,7 @@ void DropletRun::check() {
   const bool has_ended = status_ != RunStatus::running;
   if (!has_ended && !was_crossed_ && steps_done_ % steps_per_crossing_check != 0) return;
   const bool is_crossed = has_crossed_itself();
-  // Self-contact pushes a vertex back that has passed through an edge, which takes a few steps.
+  // Self-contact pushes a vertex that has passed through an edge back. This takes a few steps.
   const bool stays_crossed = is_crossed && (was_crossed_ || has_ended);
   was_crossed_ = is_crossed;
   if (stays_crossed) {
@@ -256,7 +282,7 @@ void DropletRun::check() {
   if (!is_crossed) sound_distance_ = last_displacement()[0];
 }
 
-/// Without self-contact, nothing prevents crossings, and the run goes on as the equations say.
+/// Without self-contact, nothing prevents crossings. The run then continues as the equations say.
 bool DropletRun::has_crossed_itself() const {
   const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
   return run_.dp.self_contact == SelfContact::on && num_self_crossings(last.state().position) > 0;
@@ -308,7 +334,8 @@ SteadyTravel DropletRun::steady(const Dwells& dwells) const {
 }
 
 Sag DropletRun::sag(const Droplet& droplet) const {
-  // Before gravity acted, the droplet was a circle around its centre, so the centroid had no displacement.
+  // Before gravity acted, the droplet was a circle around its centre. So the displacement of the centroid was
+  // zero.
   const DropletState& state = droplet.state();
   const Eigen::ArrayXd before = model_of(run_).free_shape(run_);
   const double top = displacement_of({state.x().minCoeff(), 0})[0] - before.head(state.size()).minCoeff();

@@ -38,6 +38,24 @@ void check_break_up(const RunParameters& run) {
           {gap_key});
 }
 
+/// Refuses parameters that cannot be scaled to the units of a daughter.
+void check_daughters(const RunParameters& run) {
+  if (run.model != Model::dp || run.dp.break_up == BreakUp::end) return;
+  const auto refuse = [](const char* key, const std::string& why, const std::string& remedy) {
+    throw Refusal({.key = "break-up", .named = {key}}, name(BreakUp::daughters), why, remedy);
+  };
+  if (run.dp.break_up_neck == 0)
+    refuse("break-up-neck", "no droplet breaks up without break-up-neck", "give break-up-neck");
+  if (run.drag.near_wall > 0)
+    refuse("near-wall-drag", "near-wall drag of daughters is not implemented", "give near-wall-drag=0");
+  if (run.dp.wall_tension.value_or(1) != 1 || run.dp.receding_angle != run.dp.advancing_angle)
+    refuse("wall-tension", "wetted walls hold no daughters", "give walls that a film of water covers");
+  if (scene_of(run).finding != Finding::clogging_length)
+    refuse("obstacle-layout", "daughters need obstacles of a periodic array", "give random, lattice or file");
+  if (run.obstacles.side_walls == SideWalls::on)
+    refuse("side-walls", "side walls are not implemented for daughters", "give side-walls=off");
+}
+
 }  // namespace
 
 RunParameters resolve(RunParameters run) {
@@ -52,6 +70,7 @@ RunParameters resolve(RunParameters run) {
   model.resolve(run, sharpest_bend);
   scene.resolve(run);
   check_break_up(run);
+  check_daughters(run);
   return run;
 }
 

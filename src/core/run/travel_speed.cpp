@@ -45,7 +45,7 @@ std::optional<std::size_t> transient_length(std::span<const double> values) {
   const std::vector<double> batches = means_of_pieces(values, batch_size);
   if (batches.size() < fewest_batches) return std::nullopt;
   // White's statistic (see the header) is the sum of squared deviations from the mean, divided by n^2. The
-  // loops take a time quadratic in the number of batches, which is at most 200.
+  // time of the loops is quadratic in the number of batches, which is at most 200.
   const std::size_t last = batches.size() / 2;
   const double negligible = negligible_error * mean_of(std::span(batches).subspan(last));
   std::size_t best = 0;

@@ -59,7 +59,7 @@ DropletState release_in_void(const RunParameters& run, const ObstacleArray& obst
   return model_of(run).release(run, obstacles);
 }
 
-double endless_way(const RunParameters&, const Eigen::Array2d&) {
+double infinite_passing_distance(const RunParameters&, const Eigen::Array2d&) {
   return std::numeric_limits<double>::infinity();
 }
 

@@ -24,6 +24,6 @@ double smallest_diameter(const RunParameters& run);
 DropletState release_in_void(const RunParameters& run, const ObstacleArray& obstacles);
 
 /// Infinite, because a droplet never reaches the end of a periodic array, and never passes a wall.
-double endless_way(const RunParameters& run, const Eigen::Array2d& start);
+double infinite_passing_distance(const RunParameters& run, const Eigen::Array2d& start);
 
 }  // namespace clog

@@ -20,7 +20,7 @@ namespace clog {
 namespace {
 
 /// The largest h at which the free droplet is upstream of the channel and touches nothing [sigma]; infinite
-/// if it never touches.
+/// if it never touches anything.
 /// @param run  resolved
 double last_free_start(const RunParameters& run) {
   const ChannelParameters& channel = run.channel;
@@ -87,7 +87,7 @@ DropletState release_upstream(const RunParameters& run, const ObstacleArray&) {
                        middle_of_open_box() + Eigen::Array2d(run.channel.start, 0), period_of_open_box());
 }
 
-double way_to_end(const RunParameters& run, const Eigen::Array2d&) {
+double distance_to_end(const RunParameters& run, const Eigen::Array2d&) {
   return run.channel.end - run.channel.start;
 }
 
@@ -103,6 +103,6 @@ const Scene channel_scene = {.finding = Finding::passage,
                              .density = no_density,
                              .walls = wedges,
                              .release = release_upstream,
-                             .way = way_to_end};
+                             .passing_distance = distance_to_end};
 
 }  // namespace clog

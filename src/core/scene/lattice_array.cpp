@@ -58,9 +58,9 @@ void find_period(RunParameters& run) {
 
 ObstacleArray lattice_walls(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
 
-/// Releases the droplet in a lattice. All voids of a lattice are alike, so the seed only chooses the place
-/// within a void (see lattice_obstacles()). A droplet that touches nothing at the box's centre starts exactly
-/// there, in the shape that it has without obstacles.
+/// All voids of a lattice are alike, so the seed only chooses the place within a void (see
+/// lattice_obstacles()). A droplet that touches nothing at the box's centre is released exactly there, in the
+/// shape that it has without obstacles.
 DropletState release_in_lattice(const RunParameters& run, const ObstacleArray& obstacles) {
   const DropletModel& model = model_of(run);
   const Period& period = obstacles.period();
@@ -82,6 +82,6 @@ const Scene lattice_scene = {.finding = Finding::clogging_length,
                              .density = lattice_density,
                              .walls = lattice_walls,
                              .release = release_in_lattice,
-                             .way = endless_way};
+                             .passing_distance = infinite_passing_distance};
 
 }  // namespace clog

@@ -46,7 +46,7 @@ double smallest_circle(const RunParameters& run) {
   return 2 * smallest->radius;
 }
 
-/// The period. With side walls, space beside the box keeps images of the circles out of reach.
+/// The period. With side walls, empty space beside the box keeps the droplet away from images of the circles.
 Period period_of(const ObstacleParameters& obstacles) {
   Period period = obstacles.period();
   if (obstacles.side_walls == SideWalls::off) return period;
@@ -137,8 +137,8 @@ void check_gaps_at_walls(const RunParameters& run) {
                                place_of(circle), gap, edge));
 }
 
-/// Checks the period: side walls separate the droplet from its images across the flow, but not along the
-/// flow.
+/// Checks the period. Side walls separate the droplet from its images across the flow, but not from its
+/// images along the flow.
 void check_period(const ObstacleParameters& obstacles) {
   if (obstacles.side_walls == SideWalls::off) check_box(obstacles);
   const double length = obstacles.period().along();
@@ -224,7 +224,7 @@ void find_gap_and_density(RunParameters& run) {
   obstacles.density = posts_per_area(obstacles);
 }
 
-/// Two random numbers in [0, 1); the constant keeps this stream of numbers apart from other streams.
+/// Two random numbers in [0, 1). The constant separates this stream of numbers from other streams.
 Eigen::Array2d drawn_from(std::uint32_t seed) {
   std::seed_seq sequence{seed, std::uint32_t{0x0bc1c1e5}};
   std::mt19937_64 engine(sequence);
@@ -247,7 +247,7 @@ Eigen::Array2d place_on_entrance(const RunParameters& run) {
   return {obstacles.entrance, from + drawn_from(run.seed)[0] * (to - from)};
 }
 
-/// Converts coordinates of the file to those of the array, whose centre is a droplet's start.
+/// Converts coordinates of the file to those of the array, which has its centre at a droplet's start.
 Eigen::Array2d shift_of(const RunParameters& run) {
   const Period period = period_of(run.obstacles);
   switch (run.obstacles.release) {
@@ -292,7 +292,7 @@ DropletState release_in_device(const RunParameters& run, const ObstacleArray& de
 
 /// The periodic image of a coordinate that is in the first period.
 double in_first_period(double place, double period) {
-  constexpr double round_off = 1e-9;  // of a droplet that starts on the border
+  constexpr double round_off = 1e-9;  // for a droplet that starts on the border
   if (place < 0 && place > -round_off) return 0;
   const double inside = place - period * std::floor(place / period);
   return inside < period ? inside : 0;
@@ -306,19 +306,19 @@ Eigen::Array2d place_in_file(const RunParameters& run, const Eigen::Array2d& pla
   return in_file;
 }
 
-double way_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
+double distance_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
   if (run.obstacles.exit == 0) return std::numeric_limits<double>::infinity();
-  return run.obstacles.exit - beginning_of_way(run.obstacles, place_in_file(run, start)[0]);
+  return run.obstacles.exit - start_of_path(run.obstacles, place_in_file(run, start)[0]);
 }
 
-/// The parameters of a stored row lack the density, because the row has it in a column of its own.
+/// The density. If the parameters lack it, as in a stored row, it is computed from the posts.
 double circle_density(const ObstacleParameters& obstacles) {
   return obstacles.density.per_area ? *obstacles.density.per_area : posts_per_area(obstacles);
 }
 
 }  // namespace
 
-double beginning_of_way(const ObstacleParameters& obstacles, double x) {
+double start_of_path(const ObstacleParameters& obstacles, double x) {
   if (obstacles.release != Release::entrance) return x;
   return obstacles.entrance + std::remainder(x - obstacles.entrance, obstacles.period().along());
 }
@@ -326,9 +326,9 @@ double beginning_of_way(const ObstacleParameters& obstacles, double x) {
 bool is_displaced(const RunParameters& run, double x, double y) {
   if (run.obstacles.layout != ObstacleLayout::file || run.obstacles.release != Release::entrance)
     return false;
-  constexpr double tolerated = 0.01;  // of the release in free space [sigma]
+  constexpr double tolerated = 0.01;  // of the release without obstacles nearby [sigma]
   const Eigen::Array2d drawn = place_on_entrance(run);
-  const double along = beginning_of_way(run.obstacles, x) - drawn[0];
+  const double along = start_of_path(run.obstacles, x) - drawn[0];
   const double across = std::remainder(y - drawn[1], run.obstacles.period().across());
   return std::hypot(along, across) > tolerated;
 }
@@ -343,7 +343,7 @@ const Scene own_circles_scene = {.finding = Finding::clogging_length,
                                  .density = circle_density,
                                  .walls = shifted_device,
                                  .release = release_in_device,
-                                 .way = way_to_exit,
+                                 .passing_distance = distance_to_exit,
                                  .place_in_file = place_in_file};
 
 }  // namespace clog

@@ -14,8 +14,8 @@ namespace clog {
 
 namespace {
 
-/// Converts a share of the saturated density to a density. Refuses densities that only some seeds reach,
-/// because otherwise single runs of a sweep would fail.
+/// Converts a share of the saturated density to a density. Refuses densities that only some seeds reach:
+/// single runs of a sweep would fail.
 void find_density(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   const std::optional<double> density = wanted_density(obstacles);
@@ -52,6 +52,6 @@ const Scene random_array_scene = {.finding = Finding::clogging_length,
                                   .density = random_density,
                                   .walls = sample,
                                   .release = release_in_void,
-                                  .way = endless_way};
+                                  .passing_distance = infinite_passing_distance};
 
 }  // namespace clog

@@ -34,11 +34,11 @@ const Scene wall_scene = {.finding = Finding::sag,
                           .check = nothing_to_check,
                           .resolve = nothing_to_resolve,
                           // With this value, automatic parameters are those of droplets among obstacles of
-                          // the usual size, with which sags are compared.
+                          // the usual size. Sags are compared with such droplets.
                           .sharpest_bend = smallest_diameter,
                           .density = no_density,
                           .walls = flat_wall,
                           .release = touching,
-                          .way = endless_way};
+                          .passing_distance = infinite_passing_distance};
 
 }  // namespace clog

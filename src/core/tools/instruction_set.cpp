@@ -15,7 +15,7 @@ std::string name_of(std::int64_t target) {
   return HWY_ARCH_X86 ? "baseline" : hwy::TargetName(target);
 }
 
-/// Lets every kernel choose among these targets from now on; 0: all that the processor supports.
+/// From this call on, every kernel chooses among these targets; 0: all that the processor supports.
 void allow_targets(std::int64_t targets) {
   hwy::SetSupportedTargetsForTest(targets);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
@@ -33,7 +33,7 @@ std::vector<std::string> instruction_sets() {
 }
 
 std::string instruction_set() {
-  // Highway queries the processor each time, unless targets are set by name; under a hypervisor this takes
+  // If targets are not set by name, Highway queries the processor each time. Under a hypervisor this takes
   // longer than the rest of a task's description.
   [[maybe_unused]] static const bool is_asked_once = (allow_targets(hwy::SupportedTargets()), true);
   return name_of(hwy::SupportedAndGeneratedTargets().front());

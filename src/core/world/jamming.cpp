@@ -9,8 +9,8 @@
 namespace clog {
 namespace {
 
-/// Surfaces keep the gap if discs of diameter + gap, the `spacing`, do not overlap. So all numbers below
-/// follow from the smallest and the widest spacing, and from the area.
+/// Surfaces keep the gap if discs of diameter + gap do not overlap. This sum is the `spacing`. So all numbers
+/// below follow from the smallest and the widest spacing, and from the area.
 struct Spacings {
   double smallest, widest;
   double edge;  // edge of a square of the same area
@@ -39,9 +39,9 @@ double standard_deviation(const Spacings& spacings) {
 }
 
 /// A lower bound of the density of saturated arrays. If not even a disc of the smallest size fits, every
-/// place is within (smallest + widest)/2 of a disc's centre. Circles that cover a plane have at least 2
-/// pi/sqrt(27) times its area (Kershner, Am. J. Math. 61, 665 (1939)). The constant below is 2/sqrt(27),
-/// rounded down by more than the rounding errors of coordinates.
+/// place is within (smallest + widest)/2 of a disc's centre. Circles that cover a plane have together at
+/// least 2 pi/sqrt(27) times its area (Kershner, Am. J. Math. 61, 665 (1939)). The constant below is
+/// 2/sqrt(27), rounded down by more than the rounding errors of coordinates.
 double covering_density(const Spacings& spacings) {
   const double reach = (spacings.smallest + spacings.widest) / 2;
   return 0.3848 / (reach * reach);

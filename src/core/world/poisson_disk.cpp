@@ -21,7 +21,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/world/poisson_disk.cpp"
 #include <hwy/foreach_target.h>
-// The code is plain; Highway compiles it for each of its targets.
+// The code uses no vector types of Highway; Highway compiles it for each of its targets.
 #include "core/world/surroundings-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -32,20 +32,20 @@ namespace {
 
 /// Random sequential addition of discs with a smallest gap between surfaces, in a period.
 ///
-/// Each arriving disc draws its place and its radius; a disc without room is discarded. The space from which
-/// discs are drawn has three dimensions: the two coordinates of the place, and the `excess`, by which the
-/// radius exceeds the smallest radius. If all discs have one size, the excess is 0.
+/// Each arriving disc draws its place and its radius; a disc without room is discarded. The space of these
+/// draws has three dimensions: the two coordinates of the place, and the `excess` of the radius over the
+/// smallest radius. If all discs have one size, the excess is 0.
 ///
-/// In every round, discs arrive as independent Poisson processes in all squares that may still have room; at
-/// first these are the cells of a grid. Discs are made square by square, in the order of memory. Only discs
-/// that have room among the points of earlier rounds are then tried, in random order. After each round,
-/// squares without room are dropped, and the others are cut into quarters. A square has a range of excesses,
-/// which is halved when it exceeds the square's width. A square has room if the smallest disc of its range
-/// has room, so no acceptable disc is excluded.
+/// In every round, discs arrive as independent Poisson processes in all squares that may still have room. At
+/// first these squares are the cells of a grid. Discs are made square by square, in the order of memory.
+/// Discs that have room among the points of earlier rounds are then tried in random order. After each round,
+/// squares without room are dropped, and the others are cut into quarters. A square has a range of excesses;
+/// the range is halved when it exceeds the square's width. A square has room if the smallest disc of its
+/// range has room, so no acceptable disc is excluded.
 class SequentialAddition {
  public:
   /// @param distance  between the centres of two of the smallest discs
-  /// @param largest_excess  of a radius over the smallest one
+  /// @param largest_excess  largest difference between a radius and the smallest radius
   SequentialAddition(const Period& period, double distance, double largest_excess, std::uint32_t seed)
       : distance_(static_cast<float>(distance)),
         distance2_(static_cast<float>(distance * distance * (1 + rounding))),
@@ -108,13 +108,13 @@ class SequentialAddition {
 
  private:
   /// Numbers of darts (arriving discs) per cell in the first rounds. They are small, because at first most
-  /// darts have room. Any numbers give the same statistics; these are fast.
+  /// darts have room. The statistics do not depend on these numbers, only the speed does.
   static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};
   static constexpr double darts_per_square = 1;  // number of darts per square in later rounds
-  /// Number of a cell in the grid, whose margins repeat the opposite side.
+  /// Number of a cell in the grid. The margins of the grid repeat the opposite side.
   using Cell = std::int32_t;
-  /// A square that may still have room, or a dart: its place from the corner of its cell, and the low end of
-  /// its range of excesses.
+  /// A square that may still have room, or a dart. Its members are its place, measured from the corner of its
+  /// cell, and the low end of its range of excesses.
   struct Square {
     float x, y, excess;
     Cell cell;
@@ -275,7 +275,7 @@ class SequentialAddition {
     ++num_points_;
   }
 
-  /// Collects the points that may lie within the distance of a place in `cell`.
+  /// Collects the points that may be within the distance of a place in `cell`.
   void look_around(Cell cell) {
     const auto cell_size = static_cast<float>(cell_size_);
     int num_near = 0;
@@ -302,9 +302,9 @@ class SequentialAddition {
     num_parts_ = 0;
   }
 
-  /// Adds the quarters of a square, in each layer of excesses, that do not lie wholly within the distance of
-  /// one point. The distances agree with those of has_room() to the last bit where squares are as small as
-  /// the resolution of numbers. So such a square either has room or is dropped.
+  /// Adds the quarters of a square, in each layer of excesses, that are not completely within the distance of
+  /// one point. Where squares are as small as the resolution of numbers, the distances agree with those of
+  /// has_room() to the last bit. So such a square either has room or is dropped.
   void add_parts(const Square& square) {
     if (is_taken(square.cell)) return;
     if (are_alike_) {

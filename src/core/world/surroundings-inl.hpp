@@ -1,4 +1,4 @@
-/// The points around a cell of poisson_disk.cpp, whose discs are all of one size; part of that file.
+/// The points around a cell of poisson_disk.cpp for discs of one size; part of that file.
 
 #if defined(CLOG_SURROUNDINGS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_SURROUNDINGS
@@ -26,14 +26,15 @@ struct Point {
   float x, y;  // relative to the corner of its cell
 };
 
-// All functions with vector arguments are inlined, never called.
+// All functions with vector arguments are inlined, so the warning about their calling convention does not
+// apply.
 #pragma GCC diagnostic ignored "-Wpsabi"
 constexpr int lanes = 8;
 using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
 using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
 
-/// The points around a cell whose discs have one size. No branch depends on the random pattern of taken
-/// cells, because mispredicted branches would cost more than the work itself.
+/// The points around a cell, for discs of one size. No branch depends on the random pattern of taken cells,
+/// because mispredicted branches would cost more than the work itself.
 struct Surroundings {
   const Point* cell;
   std::ptrdiff_t row_length;
@@ -41,10 +42,10 @@ struct Surroundings {
   float distance2;
 
   /// Smallest size of a cell as a fraction of the distance. With this size, a search from the lower half of a
-  /// cell covers two cells downwards and one upwards.
+  /// cell has to cover two cells downwards and one upwards.
   static constexpr double smallest_cell = 1 / 1.49;
 
-  /// Whether a point lies within the distance of a place in the cell.
+  /// Whether a point is within the distance of a place in the cell.
   bool reach(float place_x, float place_y) const {
     Integers is_near{};
     visit_points(place_x, place_y, [&](const Floats& x, const Floats& y) {
@@ -55,8 +56,8 @@ struct Surroundings {
     return any(is_near) != 0;
   }
 
-  /// Finds the quarters of a square in the cell that lie wholly within the distance of one point. `size` is
-  /// the size of a quarter. The result has one bit for each quarter, first along x, then along y.
+  /// Finds the quarters of a square in the cell that are completely within the distance of one point. `size`
+  /// is the size of a quarter. The result has one bit for each quarter, first along x, then along y.
   std::int32_t cover_quarters(float square_x, float square_y, float size) const {
     const float half = size / 2;
     const auto far2 = [half](const Floats& from_corner) {
@@ -90,7 +91,7 @@ struct Surroundings {
   void visit_points(float place_x, float place_y, Visit visit) const {
     const int first_column = -1 - static_cast<int>(place_x < cell_size / 2);
     const int first_row = -1 - static_cast<int>(place_y < cell_size / 2);
-    // Points are visited in the order of a vector instruction.
+    // Points are visited in the order of their lanes in a vector.
     const Floats columns = Floats{0, 1, 0, 1, 2, 3, 2, 3} + static_cast<float>(first_column);
     const Floats rows = Floats{0, 0, 1, 1, 0, 0, 1, 1} + static_cast<float>(first_row);
     const Point* points = cell + first_row * row_length + first_column;

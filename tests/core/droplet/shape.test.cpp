@@ -139,7 +139,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
 }
 
 TEST(SelfCrossings, CountWhereAFilmIsPulledThroughItself) {
-  // A flat box whose lower side bulges out through the upper side and back in.
+  // A flat box. Its lower side bulges out through the upper side and back in.
   Eigen::ArrayXd position(12);
   position << 0, 1, 2, 3, 3, 0, 0, 0, 2, 0, 1, 1;
   EXPECT_EQ(num_self_crossings(position), 2);
@@ -147,7 +147,7 @@ TEST(SelfCrossings, CountWhereAFilmIsPulledThroughItself) {
 }
 
 TEST(SelfCrossings, DoNotCountWhatOnlyTouches) {
-  Eigen::ArrayXd position(10);  // a square whose lower side has a vertex on the upper side
+  Eigen::ArrayXd position(10);  // the lower side of this square has a vertex on the upper side
   position << 0, 1, 2, 2, 0, 0, 1, 0, 1, 1;
   EXPECT_EQ(num_self_crossings(position), 0);
 }

@@ -56,9 +56,9 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
 }
 
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
-  // Springs along the interface have no energy, so the minimiser may follow a cycle without end. In three of
-  // these cases it does so with the springs with which the droplet grows, and in one case with the springs of
-  // the run. One case also needs weaker springs.
+  // Springs along the interface have no energy, so the minimiser may follow an endless cycle. In three of
+  // these cases it does so with the springs of the growing droplet, and in one case with the springs of the
+  // run. One case also needs weaker springs.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));
@@ -73,7 +73,7 @@ TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
 }
 
 TEST(Release, ComesToRestBetweenObstaclesThatNearlyTouch) {
-  for (const std::uint32_t seed : {5u, 19u}) {  // damped motion alone would not come to an end here
+  for (const std::uint32_t seed : {5u, 19u}) {  // for these seeds, damped motion alone would not end
     RunParameters run = in_small_box(1, 0.05);
     run.obstacles.box = 30;
     run = resolve(run);

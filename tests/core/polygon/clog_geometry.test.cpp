@@ -120,7 +120,7 @@ TEST(ClogGeometry, ThereIsNoGapWithinAPost) {
   const ClogGeometry geometry = disc_on({-20, 20, -10, 10, 0}).geometry();
   expect_counts(geometry, 0, 0, 1);
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
-  // Along the contour, the contact with the other obstacle is between two contacts with the post.
+  // Along the contour, the contact with the other obstacle comes between two contacts with the post.
   expect_counts(disc_on({-20, -10, 0, 10, 20, 100}).geometry(), 0, 1, 2);
 }
 

@@ -1,4 +1,4 @@
-/// Tests how much of a droplet's weight the corners of a polygon can hold if the two lobes of the droplet
+/// Tests which part of a droplet's weight the corners of a polygon can hold if the two lobes of the droplet
 /// hang over one obstacle.
 
 #include <gtest/gtest.h>
@@ -69,7 +69,8 @@ void make_symmetric(DropletState& state, int first) {
   }
 }
 
-/// A droplet at rest whose lobes are forced to be equal. Without this constraint the droplet would slide off.
+/// A droplet at rest with two lobes that are forced to be equal. Without this constraint the droplet would
+/// slide off.
 struct Hanging {
   double energy = 0;
   ClogGeometry geometry;

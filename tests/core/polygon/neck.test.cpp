@@ -74,7 +74,8 @@ TEST(ThinnestNeck, IsTheBridgeBetweenTwoCircles) {
   for (const double width : {0.001, 0.03, 0.2})
     for (const int pieces : {15, 64, 301})
       for (const double angle : {0.0, 0.4, 2.0})
-        EXPECT_NEAR(thinnest_neck(turned(bridged_circles(0.6, 0.5, width, pieces), angle)), width, 1e-12)
+        EXPECT_NEAR(thinnest_neck(turned(bridged_circles(0.6, 0.5, width, pieces), angle)).width, width,
+                    1e-12)
             << pieces << " pieces, turned by " << angle;
 }
 
@@ -83,22 +84,22 @@ TEST(ThinnestNeck, IsNotThereInCirclesAndEllipses) {
   for (const int num_vertices : {32, 128, 129, 512, 2048})
     for (const double across : {0.5, 0.1, 0.01, 0.001})
       for (const double angle : {0.0, 0.7})
-        EXPECT_EQ(thinnest_neck(turned(ellipse_of_axes(num_vertices, 0.5, across), angle)), INFINITY)
+        EXPECT_EQ(thinnest_neck(turned(ellipse_of_axes(num_vertices, 0.5, across), angle)).width, INFINITY)
             << num_vertices << " vertices, " << across;
 }
 
 /// Half of a stadium has the area w L/2 + pi w^2/8, if w is its width and L the length of its straight part.
 TEST(ThinnestNeck, IsTheWidthOfAStadiumIfItsHalvesAreLobes) {
   const double width = 0.1, enough = 2 * (pi - pi / 8) * width;
-  EXPECT_NEAR(thinnest_neck(stadium(1.01 * enough, width, 64)), width, 1e-12);
-  EXPECT_EQ(thinnest_neck(stadium(0.99 * enough, width, 64)), INFINITY);
+  EXPECT_NEAR(thinnest_neck(stadium(1.01 * enough, width, 64)).width, width, 1e-12);
+  EXPECT_EQ(thinnest_neck(stadium(0.99 * enough, width, 64)).width, INFINITY);
 }
 
 /// The bridge is very short. The diameter of the smaller circle is 1.8 or 2.2 times the width of the bridge.
 TEST(ThinnestNeck, JoinsPartsThatAreTwiceAsWide) {
   const double width = 0.2;
-  EXPECT_EQ(thinnest_neck(bridged_circles(0.6, 0.9 * width, width, 64, 0.75)), INFINITY);
-  EXPECT_NEAR(thinnest_neck(bridged_circles(0.6, 1.1 * width, width, 64, 0.79)), width, 1e-12);
+  EXPECT_EQ(thinnest_neck(bridged_circles(0.6, 0.9 * width, width, 64, 0.75)).width, INFINITY);
+  EXPECT_NEAR(thinnest_neck(bridged_circles(0.6, 1.1 * width, width, 64, 0.79)).width, width, 1e-12);
 }
 
 /// The area of the smaller circle is 0.019 or 0.021 times the area of both circles together.
@@ -106,12 +107,12 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   const double width = 0.01;
   for (const double share : {0.019, 0.021}) {
     const double radius = 0.5 * std::sqrt(share / (1 - share));
-    const double neck = thinnest_neck(bridged_circles(0.5, radius, width, 128, 0.5 + radius));
+    const double neck = thinnest_neck(bridged_circles(0.5, radius, width, 128, 0.5 + radius)).width;
     EXPECT_EQ(neck<1, share> 0.02) << neck;
   }
 }
 
-/// On the contour of this oval, the distances from two points at +-a have the product b^2. For a < b <
+/// On the contour of this oval, the product of the distances from two points at +-a is b^2. For a < b <
 /// sqrt(2) a the oval is 2 sqrt(b^2 - a^2) wide in the middle. An edge of length l is a chord there. The
 /// distance of the chord from the contour is l^2/8 times the curvature of the contour.
 TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
@@ -121,11 +122,11 @@ TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
     double last_error = INFINITY;
     for (const int num_vertices : {130, 258, 514, 1026}) {  // these numbers leave no vertex in the middle
       const double neck = thinnest_neck(closed_curve(num_vertices, [=](double t) {
-        const double s = std::sin(2 * t);
-        const double r =
-            std::sqrt(a * a * std::cos(2 * t) + std::sqrt(std::pow(b, 4) - std::pow(a, 4) * s * s));
-        return Eigen::Array2d(r * std::cos(t), r * std::sin(t));
-      }));
+                            const double s = std::sin(2 * t);
+                            const double r = std::sqrt(a * a * std::cos(2 * t) +
+                                                       std::sqrt(std::pow(b, 4) - std::pow(a, 4) * s * s));
+                            return Eigen::Array2d(r * std::cos(t), r * std::sin(t));
+                          })).width;
       const double error = std::abs(neck - exact);
       EXPECT_LT(error, 3 / std::pow(num_vertices, 2) / exact);
       EXPECT_LT(error, 0.5 * last_error) << b << ", " << num_vertices;
@@ -136,16 +137,16 @@ TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
 
 TEST(ThinnestNeck, DoesNotDependOnWhereTheContourBegins) {
   const Eigen::ArrayXd shape = test::dumbbell(128, 0.04);
-  const double width = thinnest_neck(shape);
+  const double width = thinnest_neck(shape).width;
   EXPECT_NEAR(width, 0.04, 1e-3);
   for (const int first : {1, 31, 32, 64, 127})
-    EXPECT_NEAR(thinnest_neck(test::renumbered(shape, first)), width, 1e-15);
+    EXPECT_NEAR(thinnest_neck(test::renumbered(shape, first)).width, width, 1e-15);
 }
 
 TEST(ThinnestNeck, IsLookedForBelowABoundOnly) {
   const Eigen::ArrayXd shape = bridged_circles(0.6, 0.5, 0.1, 64);
-  EXPECT_NEAR(thinnest_neck(shape, 0.1001), 0.1, 1e-12);
-  EXPECT_EQ(thinnest_neck(shape, 0.0999), INFINITY);
+  EXPECT_NEAR(thinnest_neck(shape, 0.1001).width, 0.1, 1e-12);
+  EXPECT_EQ(thinnest_neck(shape, 0.0999).width, INFINITY);
 }
 
 /// A film over an obstacle, and two lobes with water between them. The film is thickest at its ends. The
@@ -163,7 +164,7 @@ TEST(ThinnestNeck, IsTheFilmAboveAnObstacleAndNotTheGapBetweenLobes) {
   points.emplace_back(inner + 0.05, gap / 2);
   points.emplace_back(lobe, gap / 2);
   points.emplace_back(lobe, inner + film + 0.05);
-  EXPECT_NEAR(thinnest_neck(polygon_of(points)), film, 1e-3);
+  EXPECT_NEAR(thinnest_neck(polygon_of(points)).width, film, 1e-3);
 }
 
 TEST(ThinnestNeck, HasOneLineOfSight) {
@@ -171,7 +172,7 @@ TEST(ThinnestNeck, HasOneLineOfSight) {
   // and the water between the bars.
   const Eigen::ArrayXd bars =
       polygon_of({{0, 0}, {2, 0}, {2, 0.3}, {0.5, 0.3}, {0.5, 0.35}, {2, 0.35}, {2, 0.65}, {0, 0.65}});
-  EXPECT_NEAR(thinnest_neck(bars), 0.3, 1e-12);
+  EXPECT_NEAR(thinnest_neck(bars).width, 0.3, 1e-12);
 }
 
 }  // namespace

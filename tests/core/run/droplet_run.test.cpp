@@ -186,7 +186,7 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   EXPECT_THROW(resume_in_array(run, bytes), Error);
 }
 
-/// Tries snapshots with a correct checksum and wrong content, in which several unlikely values replace each
+/// Tries snapshots that have a correct checksum and wrong content: several unlikely values replace each
 /// number in turn. resume() may refuse such a snapshot. Otherwise the run must continue to its end, without a
 /// crash or an endless loop.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
@@ -368,9 +368,9 @@ TEST(DropletRun, FailsWhenTheInterfaceCrossesItself) {
   EXPECT_EQ(result.failed_by, FailedBy::crossing);
   EXPECT_LT(result.time, 1000);
 
-  // The sound distance is where the droplet was when it last did not cross itself: crossings are looked for
-  // once in 2048 steps, and a crossing that is still there at the next check fails the run. Afterwards the
-  // sound distance stays, while the droplet sinks on.
+  // The sound distance is the distance at the last check at which the droplet did not cross itself. Such a
+  // check is made once in 2048 steps. A crossing that is still there at the next check fails the run. After
+  // the crossing, the sound distance stays, while the droplet sinks further.
   parameters.max_time = result.time - (2048 + DropletRun::steps_per_check) * parameters.time_step.value();
   const RunResult before = result_of(parameters, 1000);
   EXPECT_EQ(before.status, RunStatus::flowing);
@@ -435,8 +435,8 @@ RunParameters falls_onto_a_circle(double line_tension, double offset, int vertic
 }
 
 /// The liquid hangs on both sides of a thin film over the obstacle. So four interfaces of tension Gamma have
-/// to carry its whole weight, and below Gamma = pi/16 they cannot. A stiffer droplet also rests on the
-/// obstacle itself.
+/// to carry its whole weight. Below Gamma = pi/16 they cannot. A stiffer droplet also rests on the obstacle
+/// itself.
 TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   for (const int vertices : {64, 128, 256}) {
     const RunResult broken = result_of(falls_onto_a_circle(0.95 * std::numbers::pi / 16, 0, vertices), 100);
@@ -476,9 +476,9 @@ TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
 }
 
-/// The run starts from a droplet that hangs over an obstacle. The neck of the droplet still gets thinner, and
-/// its place of rest is known. If the neck is too thin at rest, the rest does not count as a clog. The
-/// droplet then breaks up as soon as its neck is too thin.
+/// The run starts from a droplet that hangs over an obstacle. The neck of the droplet still gets thinner, but
+/// its place of rest is already known. If the neck at this place is too thin, the rest does not count as a
+/// clog. The droplet then breaks up as soon as its neck is too thin.
 TEST(BreakUp, ComesBeforeACertifiedClog) {
   RunParameters run;
   run.dp.perimeter_spring = PerimeterSpring::rest;
@@ -498,7 +498,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   const DropletState state = hung.droplet().state();
   const std::optional<DropletState> rest = model_of(run).equilibrium(run, hung.obstacles(), state);
   ASSERT_TRUE(rest);
-  const double now = thinnest_neck(state.position), at_rest = thinnest_neck(rest->position);
+  const double now = thinnest_neck(state.position).width, at_rest = thinnest_neck(rest->position).width;
   ASSERT_LT(at_rest, now);
   run.max_time = 1000;
   const auto obstacles = std::make_shared<const ObstacleArray>(sample_obstacles(run.obstacles, run.seed));

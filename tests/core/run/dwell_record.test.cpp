@@ -13,8 +13,8 @@ namespace {
 constexpr double dwell_length = 0.05;
 constexpr double speed = 0.5;  // at this speed, dwells of more than 1 t0 are recorded
 
-/// A part of a droplet's course, in which the droplet rests at a place for a time. The run has one check per
-/// unit of time.
+/// A part of a droplet's course: the droplet rests at a place for a time. The run has one check per unit of
+/// time.
 struct Stand {
   double place;
   int time;
@@ -76,7 +76,7 @@ TEST(DwellRecord, CountsTheDwellUnderWayUnlessItIsAClogs) {
 TEST(DwellRecord, SeesADropletThatCreepsAsStandingUntilItHasCrept) {
   DwellRecord record(dwell_length, speed);
   for (int time = 1; time <= 1000; ++time) record.add(time, time / 1024.0);
-  // The droplet needs a time of 52 to move by more than 0.05, and does this again and again.
+  // The droplet takes a time of 52 to move by more than 0.05, again and again.
   EXPECT_EQ(lengths(record.found(1000, false)), std::vector<double>{52});
   EXPECT_EQ(record.found(1000, false).last_distance, 19 * 52 / 1024.0);
 }

@@ -54,9 +54,9 @@ TEST(TransientLength, FindsWhereAStepEnds) {
   }
 }
 
-/// Consider a speed with the mean 1 - exp(-t/tau) and the noise s. The best cut is where bias and scatter
-/// balance. There the squared deviation exp(-2 t/tau) is about equal to the variance s^2/5 of a batch's mean,
-/// so t = tau log(sqrt(5)/s). Chance shifts the cut by a few batches, usually to later times.
+/// Consider a speed with the mean 1 - exp(-t/tau) and the noise s. At the best cut, bias and scatter balance.
+/// There the squared deviation exp(-2 t/tau) is about equal to the variance s^2/5 of a batch's mean, so t =
+/// tau log(sqrt(5)/s). Chance shifts the cut by a few batches, usually to later times.
 TEST(TransientLength, FindsWhereADecayDropsBelowTheNoise) {
   constexpr double tau = 40, noise = 0.05;
   const double expected = tau * std::log(std::sqrt(5.0) / noise);

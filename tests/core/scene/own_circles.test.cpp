@@ -146,7 +146,7 @@ TEST(OwnCircles, AreEnteredOnALineAndLeftAtTheExit) {
     EXPECT_NEAR(in_file[0], 2, 1e-9) << "free, so just there";
     EXPECT_GE(in_file[1], 3 - 1e-9);
     EXPECT_LE(in_file[1], 4 + 1e-9);
-    EXPECT_NEAR(scene.way(run, place), 18, 1e-9);
+    EXPECT_NEAR(scene.passing_distance(run, place), 18, 1e-9);
   }
 }
 
@@ -288,7 +288,8 @@ TEST(OwnCircles, LetDropletsStartWithinTheBoxWhereverTheyAre) {
         ASSERT_GE(in_file.minCoeff(), 0);
         ASSERT_LT(in_file[0], obstacles.length);
         ASSERT_LT(in_file[1], obstacles.box);
-        // The nearest circle in the file is as far as the nearest one in the array; a soft disk overlaps it.
+        // The nearest circle has the same distance in the file and in the array. A soft disk overlaps this
+        // circle.
         ASSERT_NEAR(room_at(in_file, obstacles),
                     std::min(clearance(device, place[0], place[1], 12), room_at(in_file, obstacles)), 1e-9);
         const double least_room = model == Model::dp ? 0 : -1;
@@ -297,7 +298,7 @@ TEST(OwnCircles, LetDropletsStartWithinTheBoxWhereverTheyAre) {
         if ((place < 0).any() || place[0] >= obstacles.length || place[1] >= obstacles.box)
           ++num_across_the_border;
         if (obstacles.exit == 0) continue;
-        const double way = scene.way(run, place);
+        const double way = scene.passing_distance(run, place);
         ASSERT_NEAR(std::remainder(in_file[0] + way - obstacles.exit, obstacles.length), 0, 1e-9);
         ASSERT_LE(std::abs(obstacles.exit - way - obstacles.entrance), obstacles.length / 2 + 1e-9);
       }

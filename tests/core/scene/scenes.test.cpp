@@ -110,7 +110,7 @@ TEST(OnAWall, TheProfileIsThatOfYoungAndLaplaceFromTopToBottom) {
   for (int i = 0; i < 512; ++i) {
     const int next = (i + 1) % 512;
     const double z = (position[i] + position[next]) / 2 - apex;
-    if (z > 0.98 * exact.height) continue;  // this part lies on the wall
+    if (z > 0.98 * exact.height) continue;  // this part rests on the wall
     const double ex = position[next] - position[i];
     const double ey = position[512 + next] - position[512 + i];
     const double cosine = std::abs(ey) / std::hypot(ex, ey);
@@ -204,8 +204,8 @@ TEST(OnAWall, TheShapeOnAWettedWallHangsNeitherOnTheSpringsNorOnTheVertices) {
 
 /// The shape parameter of a droplet in an orifice with rounded tips. The droplet is made of two equal caps of
 /// circles, which touch the tips from both sides, and of the arcs of the tips between the caps. Each quarter
-/// is computed alone. Let h be the distance of a tip's centre from the axis, and c the distance of a cap's
-/// centre from the orifice. Then the radius of the cap is R = sqrt(c^2 + h^2) - tip_radius. The quarter
+/// is computed separately. Let h be the distance of a tip's centre from the axis, and c the distance of a
+/// cap's centre from the orifice. Then the radius of the cap is R = sqrt(c^2 + h^2) - tip_radius. The quarter
 /// consists of the cap's sector and the triangle of the three centres, without the tip's sector.
 double shape_of_two_caps(double orifice, double tip_radius) {
   const double h = orifice / 2 + tip_radius;

@@ -76,8 +76,8 @@ TEST(LargestDensity, LiesEightToTenStandardDeviationsBelowTheMean) {
   }
 }
 
-/// Compares two numbers: the density that resolve() computes for a share of the saturated density, and the
-/// same share of the number of obstacles in saturated arrays.
+/// Compares the density that resolve() computes for a share of the saturated density with the number of
+/// obstacles in saturated arrays, multiplied by this share.
 TEST(ShareOfSaturated, IsThatOfTheMeanOfSaturatedArrays) {
   for (const Geometry& geometry :
        {Geometry{0.2, 0.3, 0, 40, 20}, Geometry{0.5, 0.3, 0, 60, 20}, Geometry{0.2, 0.3, 0.5, 40, 20}}) {

@@ -222,9 +222,9 @@ TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
 
 // A rigid disk that slowly sinks past an obstacle leaves it at a lateral distance b = (sigma + sigma_ob)/2,
 // on the side to which it was pushed. Consider a row with the tilt t and the spacing a. If a sin t < b, the
-// disk meets the next obstacle of the row, and so it follows the row (Frechette and Drazer, J. Fluid Mech.
-// 627, 379 (2009)). The square lattice has rows with the tilt t and the spacing a, and rows with the tilt t -
-// 45 degrees and the spacing sqrt(2) a.
+// disk touches the next obstacle of the row, so it follows the row (Frechette and Drazer, J. Fluid Mech. 627,
+// 379 (2009)). The square lattice has two kinds of rows: with the tilt t and the spacing a, and with the tilt
+// t - 45 degrees and the spacing sqrt(2) a.
 TEST(Lattice, LeadsADiskAlongItsRows) {
   for (const double angle : {-20.0, -8.0, 8.0, 20.0})
     EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle)))), std::tan(angle * degree), 0.02)

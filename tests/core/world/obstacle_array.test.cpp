@@ -142,8 +142,8 @@ std::uint64_t digest(const ObstacleArray& array) {
 }
 
 TEST(SampleObstacles, GivesDiscsOfOneSizeThatNeverChange) {
-  // These digests were recorded with the sampler that adds discs square by square. Replace them only together
-  // with a change that also alters the course of runs.
+  // These digests were recorded with the sampler that adds discs square by square. Replace them only in a
+  // change that also alters the course of runs.
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.4, .density = {}, .box = 30}, 4)), 0xea87e7a8c4585524u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.2, .density = 0.35, .box = 50}, 1)), 0x10fc226cc1015f64u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 1.1, .density = {}, .box = 17.3}, 11)), 0x9241ec7695805bf0u);
@@ -409,7 +409,7 @@ TEST(ObstacleArray, FindsPlacesWithinAPost) {
     ASSERT_EQ(periodic.is_within_post(place), is_in_ring(place, 10)) << place.transpose();
     if (clearance(between_walls, place[0], place[1], 1) <= 0) continue;
     const bool is_in_pocket = (place - half).matrix().norm() < 1;
-    // The wall closes the ring, which it cuts.
+    // The wall cuts the ring, and closes it.
     ASSERT_EQ(between_walls.is_within_post(place), is_in_ring(place, 0) || is_in_pocket) << place.transpose();
     num_within += is_in_ring(place, 0) || is_in_pocket;
   }

@@ -9,9 +9,9 @@
 namespace clog {
 
 /// Potential energy of a soft disk among obstacles (Cheng et al. Eq. 8), and the force that derives from it.
-/// Each obstacle or wedge whose surface is at a distance d < sigma/2 from the disk's centre (d < 0: the
-/// centre is inside) contributes (E_w/2)(1 - 2d/sigma)^2. The force is finite everywhere; exactly at an
-/// obstacle's centre it is zero.
+/// Let d be the distance of the surface of an obstacle or wedge from the disk's centre (d < 0: the centre is
+/// inside). If d < sigma/2, this obstacle or wedge contributes (E_w/2)(1 - 2d/sigma)^2. The force is finite
+/// everywhere; exactly at an obstacle's centre it is zero.
 class SpForces {
  public:
   SpForces(const RunParameters& run, const ObstacleArray& obstacles);
@@ -32,7 +32,7 @@ class SpForces {
   double wall_stiffness_;
   Eigen::Array2d weight_;
   bool listed_ = false;
-  double skin_ = 0;  // distance that the disk may move before near_ must be renewed
+  double skin_ = 0;  // distance that the disk may move before near_ must be rebuilt
   Eigen::Array2d reference_{0, 0};
   std::vector<Obstacle> near_;
 
@@ -42,15 +42,15 @@ class SpForces {
   void visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame, Visit visit) const;
 };
 
-/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but the variable
-/// in its loop is the displacement in a step instead of the velocity. This shortens the longest chain of
+/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but its loop uses
+/// the displacement per step as variable instead of the velocity. This shortens the longest chain of
 /// dependent operations in a step to one root, one division and a few sums.
 class SpDroplet final : public Droplet {
  public:
   SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);
 
   void advance(int num_steps) override;
-  void start_afresh() override;
+  void rebuild_lists() override;
   double kinetic_energy() const override;
   PotentialEnergy potential_energy() const override { return forces_.energy(state_); }
   PolygonShape shape() const override;

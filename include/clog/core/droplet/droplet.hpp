@@ -8,7 +8,7 @@
 
 namespace clog {
 
-/// Perimeter above which a polygon has burst and is not integrated any further [sigma].
+/// Perimeter [sigma] above which a polygon counts as burst. It is then not integrated any further.
 inline constexpr double burst_perimeter = 1000;
 
 /// A moving droplet. A run uses the droplets of both models through this class.
@@ -21,7 +21,7 @@ class Droplet {
 
   /// Rebuilds everything that save() does not write: contact lists and sums over them. After this call, a
   /// droplet restored from save() moves exactly like this one.
-  virtual void start_afresh() = 0;
+  virtual void rebuild_lists() = 0;
   void save(ByteWriter& bytes) const;
   /// Restores what save() wrote for a droplet with the same parameters and obstacles.
   void restore(ByteReader& bytes);
@@ -43,11 +43,11 @@ class Droplet {
   /// Area and perimeter; a soft disk returns those of the undeformed disk.
   virtual PolygonShape shape() const = 0;
 
-  /// From this call on, work() is summed up, which costs a pass over the velocities per step.
+  /// After this call, work() adds up the dissipated energy. This costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
   /// Work since measure_dissipation() [g rho sigma^3]: the energy lost to drag, and the work of the springs
-  /// along the interface, whose force derives from no potential energy. Both are sums by the trapezoidal
-  /// rule, which is second order in the time step, like the integrator.
+  /// along the interface. (The force of these springs derives from no potential energy.) Both are sums by the
+  /// trapezoidal rule, which is second order in the time step, like the integrator.
   struct Work {
     double dissipated = 0;
     double spreading = 0;

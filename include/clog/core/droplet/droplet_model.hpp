@@ -34,7 +34,7 @@ struct DropletModel {
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
   /// Width of the narrowest passage that the droplet's points resolve [sigma].
   double (*narrowest)(const RunParameters& run);
-  /// Computes the automatic values, and refuses given values that are impossible together with them.
+  /// Computes the automatic values. Refuses given values that contradict them.
   /// @param sharpest_bend  see Scene
   /// @throws Error
   void (*resolve)(RunParameters& run, double sharpest_bend);

@@ -13,8 +13,8 @@ namespace clog {
 
 /// Position of a droplet's local coordinates in the periodic plane: global = image * period + origin + local.
 /// The origin follows the droplet in steps of whole units, so local coordinates stay of order one at any
-/// distance. The origin is always in the first period, so a droplet one period further on feels the same
-/// forces, bit for bit.
+/// distance. The origin is always in the first period. Droplets that are one period apart therefore feel
+/// equal forces, bit for bit.
 struct LocalFrame {
   Eigen::Array2d period{0, 0};                   ///< lengths of the period along and across the flow [sigma]
   Eigen::Array2d origin{0, 0};                   ///< a place in the first period [sigma]
@@ -56,10 +56,13 @@ struct Travel {
   double absolute = 0;
   double relative = 0;  ///< displacement relative to the mean of the points
 };
-/// Upper bound on the distance that a point covers in a time [t0] if it begins with this speed. The bound is
-/// at least twice the distance of a free fall.
-inline double possible_way(double speed, double time) { return 2 * time * (speed + units::gravity * time); }
-/// Largest motion for which contact lists allow [sigma]. A droplet that needs more has diverged.
+/// Upper bound on the distance that a point with this initial speed covers in a time [t0]. The bound is at
+/// least twice the distance of a free fall.
+inline double possible_distance(double speed, double time) {
+  return 2 * time * (speed + units::gravity * time);
+}
+/// Largest displacement that contact lists can allow for [sigma]. A droplet that moves farther between two
+/// updates has diverged.
 inline constexpr double widest_skin = 4;
 
 /// A vertex that has passed through an edge of the same droplet, see SelfCrossings.
@@ -88,13 +91,13 @@ struct DropletState {
     return {velocity.head(size()).mean(), velocity.tail(size()).mean()};
   }
 
-  /// See possible_way().
+  /// See possible_distance().
   Travel possible_travel(double time) const {
     const Eigen::Array2d drift = mean_velocity();
     const auto vx = velocity.head(size());
     const auto vy = velocity.tail(size());
-    return {.absolute = possible_way(std::sqrt((vx.square() + vy.square()).maxCoeff()), time),
-            .relative = possible_way(
+    return {.absolute = possible_distance(std::sqrt((vx.square() + vy.square()).maxCoeff()), time),
+            .relative = possible_distance(
                 std::sqrt(((vx - drift[0]).square() + (vy - drift[1]).square()).maxCoeff()), time)};
   }
 
@@ -116,8 +119,8 @@ struct DropletState {
   }
 
   /// Keeps local coordinates of order one: if the centre is more than one diameter from the origin along
-  /// either axis, moves the frame by whole units. A diverged droplet, which may be infinitely far away, stays
-  /// in its frame. Returns the shift (usually zero).
+  /// either axis, moves the frame by whole units. The frame of a diverged droplet does not move, because such
+  /// a droplet may be infinitely far away. Returns the shift (usually zero).
   Eigen::Array2d recentre() {
     constexpr double diverged = 1e6;  // [sigma]
     const Eigen::Array2d centre_now = centre();

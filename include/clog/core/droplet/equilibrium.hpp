@@ -11,7 +11,7 @@
 namespace clog {
 
 /// Largest distance of any coordinate (of a vertex, or of the soft disk) from its equilibrium value [sigma].
-/// A droplet that is farther away is not assumed to approach this equilibrium.
+/// A droplet with a larger distance is not assumed to approach this equilibrium.
 inline constexpr double farthest_rest = 0.03;
 /// Smallest stiffness that an equilibrium must have against any displacement [M g/sigma]: the restoring force
 /// divided by the displacement when the droplet moves as a whole.
@@ -24,10 +24,10 @@ struct Axes {
   Eigen::Index num_tangential;  ///< number of the last columns, in which points slide along the interface
   /// Unit vector, in the tangential coordinates, of the motion in which all vertices slide along the
   /// interface; empty if this motion is tested like any other. A slide by one edge maps the polygon onto
-  /// itself with its vertices renumbered, and does not move the droplet. The energy changes along this slide
-  /// only by small ripples, which arise because the corners between edges touch obstacles. The slide is the
-  /// last motion to decay, so the droplet may be at the top of a ripple when the search begins. Therefore the
-  /// search tests neither force nor stiffness along the slide.
+  /// itself with its vertices renumbered, and does not move the droplet. The energy has small ripples along
+  /// this slide, because the corners between edges touch obstacles. The slide decays last of all motions, so
+  /// the droplet may be at the top of a ripple when the search begins. Therefore the search tests neither
+  /// force nor stiffness along the slide.
   Eigen::VectorXd slide;
 };
 
@@ -54,11 +54,12 @@ struct EquilibriumForces {
 /// The stable static equilibrium that a nearly stopped droplet approaches; nullopt if there is none, or if it
 /// is not certain that the droplet would reach it.
 ///
-/// The search applies Newton's method to the forces until these vanish within round-off. The potential energy
-/// must be convex at the beginning, at the end, and wherever the search computes the stiffness in between,
-/// and all these places must be within `farthest_rest` of the initial one. Then the droplet and the
-/// equilibrium are assumed to be in the same basin. So the search returns nullopt for a droplet that balances
-/// on an obstacle, that could drift aside freely, or that creeps past a place where there is no equilibrium.
+/// The search applies Newton's method to the forces until they vanish within round-off. The potential energy
+/// must be convex at the beginning, at the end, and wherever the search computes the stiffness in between.
+/// All these places must be within `farthest_rest` of the initial place. If all this holds, the droplet and
+/// the equilibrium are assumed to be in the same basin. So the search returns nullopt for a droplet that
+/// balances on an obstacle, for a droplet that could drift aside freely, and for a droplet that creeps past a
+/// place without an equilibrium.
 ///
 /// @param initial  the droplet; its velocities have no effect
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);
@@ -68,7 +69,7 @@ enum class Stability {
   none,  ///< the droplet has not stopped
   stable,
   unstable,  ///< it balances: some displacement grows
-  unknown    ///< the differences of forces do not decide
+  unknown    ///< the difference quotients of the forces do not decide
 };
 template <>
 struct Words<Stability> {
@@ -78,11 +79,11 @@ struct Words<Stability> {
                                               {Stability::unknown, "unknown"}};
 };
 
-/// The stability of a droplet on which the forces vanish nearly, from its smallest stiffness if the points
-/// adapt along the interface. The differences of forces from which the stiffness follows are taken with one
-/// step and with twice this step. The droplet is stable or unstable if the smallest stiffness is positive or
-/// negative by more than these two differ, and by more than round-off; otherwise, and if the points cannot
-/// adapt, the stability is unknown.
+/// The stability of a droplet on which the forces nearly vanish. It follows from the smallest stiffness while
+/// the points adapt along the interface. The stiffness is a difference quotient of forces, taken with one
+/// step and with twice this step. The error of the stiffness is the difference of these two results plus
+/// round-off. If the smallest stiffness is positive, or negative, by more than its error, the droplet is
+/// stable, or unstable. Otherwise the stability is unknown. It is also unknown if the points cannot adapt.
 Stability stability_of(const EquilibriumForces& forces, const DropletState& stopped);
 
 }  // namespace clog

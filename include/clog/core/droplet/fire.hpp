@@ -14,8 +14,8 @@ namespace clog {
 /// instruction sets.
 namespace kernel {
 struct ForceSums {
-  double largest;                ///< largest |f_i|
-  double power, speed2, force2;  ///< sum f v, sum v^2, sum f^2
+  double largest;                ///< largest absolute component of the force
+  double power, speed2, force2;  ///< sums over all components: f v, v^2, f^2
 };
 ForceSums sum_forces(std::ptrdiff_t n, const double* force, const double* velocity);
 /// v = kept v + gain f, limited to `fastest` in either direction; then x += time v.
@@ -43,8 +43,8 @@ struct FireResult {
 /// Contact lists are updated once in this number of iterations, before the forces are computed.
 inline constexpr int iterations_per_update = 3;
 
-/// Bound on the motion of points between an update of the contact lists and the last computation of forces
-/// before the next update. max_move limits each coordinate, so a point may move farther by a factor of
+/// Bound on the displacement of points between an update of the contact lists and the last computation of
+/// forces before the next update. max_move limits each coordinate, so a point may move farther by a factor of
 /// sqrt(2).
 inline Travel travel_between_updates(const FireOptions& options) {
   const double farthest = (iterations_per_update - 1) * options.max_move * std::numbers::sqrt2;
@@ -94,9 +94,9 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Relaxes the droplet by damped motion like that of a run. This is slower than FIRE, but it may also bring
-/// the droplet to rest if the forces derive from no energy. With such forces, FIRE may cycle for ever,
-/// because it adapts to the work that the forces do.
+/// Relaxes the droplet by damped motion like that of a run. This is slower than FIRE, but it also works for
+/// some forces that derive from no energy. With such forces FIRE may cycle for ever, because FIRE adapts to
+/// the work that the forces do.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;

@@ -10,7 +10,8 @@
 
 namespace clog {
 
-/// What holds a clogged droplet: obstacles over which it hangs, gaps that it does not pass, or both.
+/// The mechanism that holds a clogged droplet: the droplet hangs over obstacles, it cannot pass gaps, or
+/// both.
 enum class ClogMechanism { none, wrapped, squeezed, hybrid };
 template <>
 struct Words<ClogMechanism> {
@@ -28,14 +29,14 @@ struct ClogGeometry {
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   std::int64_t num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
   /// Number of gaps in front of the droplet. Two successive arcs (see num_arcs) on different obstacles have a
-  /// gap between them if the chord from arc to arc faces downstream and at least one of the two obstacles
-  /// supports the droplet.
+  /// gap between them under two conditions: the chord from arc to arc faces downstream, and at least one of
+  /// the two obstacles supports the droplet.
   std::int64_t num_gaps = 0;
   std::int64_t num_arcs =
       0;  ///< number of arcs; an arc is a chain of edges that touch one obstacle (post or wall)
   /// Largest part of the weight that the corners of the polygon can hold. Each wrapped obstacle contributes
-  /// its part of the support times x^2/16, with x the length of the longest edge on the obstacle divided by
-  /// the radius at which this edge lies. NaN without support.
+  /// its part of the support times x^2/16. Here x is the length of the longest edge on the obstacle divided
+  /// by the distance of this edge from the obstacle's centre. NaN without support.
   double mesh_hold = std::numeric_limits<double>::quiet_NaN();
   /// Circles of the wrapped obstacles that give at least a tenth of the support, in the droplet's
   /// coordinates.
@@ -50,7 +51,7 @@ struct ClogGeometry {
 struct Hold {
   std::optional<ClogMechanism> mechanism = ClogMechanism::none;
   ClogGeometry geometry;  ///< geometry of a polygon; unset for a soft disk
-  /// See WallFriction::use(), of the carriers; NaN without carriers or friction.
+  /// See WallFriction::use(); only carriers count. NaN without carriers or friction.
   double friction_use = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -7,7 +7,7 @@
 
 namespace clog {
 
-/// A local maximum of clearance(), found by a climb from the centre of the period, and not within a post
+/// A local maximum of clearance() outside of all posts, found by a climb from the centre of the period
 /// [sigma]. @throws Error if every void is within a post
 Eigen::Array2d nearest_void(const ObstacleArray& obstacles);
 
@@ -22,7 +22,7 @@ double clearance(const ObstacleArray& obstacles, double x, double y, double limi
 DropletState state_at_rest(const Eigen::ArrayXd& droplet, const Eigen::Array2d& place,
                            const Eigen::Array2d& period);
 
-/// Number of obstacles whose centre lies inside the polygon.
+/// Number of obstacles with a centre inside the polygon.
 int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 
 /// @throws Error that names the reason and the remedy
@@ -32,8 +32,8 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 /// fraction of the weight of the vertex or disk. The force excludes the weight and the springs.
 inline constexpr double release_force_tolerance = 1e-4;
 /// This tolerance replaces release_force_tolerance for an interface with springs along it. The force of these
-/// springs derives from no energy, and it keeps the interface sliding for ever in a cycle of 1e-3 sigma,
-/// while the droplet as a whole stays in place. No observed force exceeded 0.01 of the weight.
+/// springs derives from no energy. It keeps the interface sliding for ever in a cycle of 1e-3 sigma, while
+/// the droplet as a whole stays in place. No observed force exceeded 0.01 of the weight.
 inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog

@@ -13,14 +13,14 @@
 namespace clog {
 
 /// A wall near a droplet, in the droplet's frame: a circle, or a wedge of the scene. A circle enlarged by
-/// films is a wall of its own, see WallContacts.
+/// films counts as a separate wall, see WallContacts.
 struct WallPlace {
   double x = 0, y = 0;      ///< centre [sigma]
   double radius = 0;        ///< [sigma]
   Eigen::Index wedge = -1;  ///< number of the wedge; -1: a circle
 
-  /// Whether both places are on the same wall. Two lists may give the centre of one wall with different
-  /// rounding errors; the centres of different walls differ by much more.
+  /// Whether both places are on the same wall. The lists of contacts may give the centre of one wall with
+  /// different rounding errors; the centres of different walls differ by much more.
   bool is(const WallPlace& other) const {
     constexpr double rounding = 1e-6;
     return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding &&
@@ -48,8 +48,8 @@ struct WallAnchor {
   /// [sigma].
   double x, y;
   double slip = 0;  ///< distance along the wall from the anchor to its holder at the last update [sigma]
-  /// 1 if the wall yields: then the spring's force follows from `slip` alone, wherever the holder moves. Only
-  /// the search for an equilibrium uses this value; a moving droplet updates its anchors at every step.
+  /// 1 if the wall yields. The spring's force then follows from `slip` alone, for any position of the holder.
+  /// Only the search for an equilibrium uses this value; a moving droplet updates its anchors at every step.
   Eigen::Index yields = 0;
 
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
@@ -60,7 +60,7 @@ struct WallAnchor {
 class KnownAnchors {
  public:
   /// Moves the anchors from `anchors` into this object.
-  /// @param num_holders  find() finds only anchors whose holder has a smaller number than this
+  /// @param num_holders  find() finds only anchors with a holder below this number
   void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
     std::swap(anchors_, anchors);
     anchors.clear();
@@ -97,8 +97,8 @@ struct WallYield {
     dissipated += 0.5 * stiffness * anchor.slip * anchor.slip;
     excess = std::max(excess, stiffness * std::abs(anchor.slip));
   }
-  /// Limits the slip to the range from `least` to `most`, which the wall bears, and returns the limited slip.
-  /// The caller then moves the anchor by the difference between `slip` and the limited slip.
+  /// Limits the slip to the range from `least` to `most`, within which the wall does not yield. Returns the
+  /// limited slip. The caller then moves the anchor by the difference between `slip` and the limited slip.
   double hold(WallAnchor& anchor, double slip, double least, double most, double stiffness, Purpose purpose) {
     const double held = std::clamp(slip, least, most);
     excess = std::max(excess, stiffness * std::abs(held - anchor.slip_of_force(slip)));

@@ -19,20 +19,20 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
-/// Whether two circles are around one centre. Two lists may give one centre with different rounding errors;
-/// the centres of different obstacles differ by much more.
+/// Whether two circles have the same centre. Lists of contacts may give one centre with different rounding
+/// errors; the centres of different obstacles differ by much more.
 inline bool share_centre(const Obstacle& one, const Obstacle& other) {
   constexpr double rounding = 1e-6;  // [sigma]
   return std::abs(one.x - other.x) < rounding && std::abs(one.y - other.y) < rounding;
 }
 
-/// User-supplied circles, distinguished by their values, not by the name of a file. A result row contains
-/// only their checksum.
+/// User-supplied circles. Two objects are equal if their circles are equal, whatever the names of their
+/// files. A result row contains only the checksum of the circles.
 class OwnCircles {
  public:
-  /// @param circles  a radius of 0 stands for half of obstacle-diameter
-  /// @param source  their origin, for messages
-  /// @param droplet  diameter of the droplet for which they were drawn, if the source gives it [m]
+  /// @param circles  a radius of 0 means half of obstacle-diameter
+  /// @param source  the origin of the circles, for messages
+  /// @param droplet  diameter of the droplet for which the circles were drawn, if the source gives it [m]
   explicit OwnCircles(std::vector<Obstacle> circles, std::string source = "",
                       std::optional<double> droplet = {});
   /// Circles known only by their checksum. @throws Error  if the text does not have the form of check_sum()

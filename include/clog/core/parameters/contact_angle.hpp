@@ -8,9 +8,9 @@
 
 namespace clog {
 
-/// Tension of the interface on a wall divided by Gamma. Unless it is given, it is minus the mean of the
-/// cosines of the receding and the advancing angle. This assumes that the wall resists both motions alike.
-/// Without contact angles, the tension is 1.
+/// Tension of the interface on a wall divided by Gamma. If it is not given, it is minus the mean cosine of
+/// the receding and the advancing angle. This assumes that the wall resists both motions equally. Without
+/// contact angles, the tension is 1.
 inline double wall_tension(const DpParameters& dp) {
   if (dp.wall_tension) return *dp.wall_tension;
   if (!dp.receding_angle || !dp.advancing_angle) return 1;

@@ -7,8 +7,8 @@
 namespace clog {
 
 /// The description of a run's laboratory, `key = value; key = value`. Results are also printed in units of
-/// this laboratory; the runs do not depend on it. A result row contains only the checksum of the description,
-/// and a process knows the texts of only those descriptions that it has read.
+/// this laboratory; the runs do not depend on it. A result row contains only the checksum of the description.
+/// A process can find the text of a checksum only if it has read this text before.
 class LaboratoryText {
  public:
   /// @throws Error if nothing in the text is `key = value`

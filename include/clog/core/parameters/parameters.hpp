@@ -9,8 +9,8 @@
 
 namespace clog {
 
-/// Increase this number whenever equal parameters begin to give other results: runs of different versions do
-/// not belong in one table.
+/// Increase this number whenever equal parameters begin to give other results. Runs of different versions
+/// must not be in one table.
 inline constexpr int model_version = 12;
 
 enum class Model { dp, sp };
@@ -18,9 +18,9 @@ template <>
 struct Words<Model> {
   static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
 };
-/// The springs of the edges. They pull each edge towards the rest length l0 (`rest`, as in the paper) or
-/// towards the current mean edge length (`mean`), or they act only `along` the interface. Springs `along` the
-/// interface space the vertices evenly, but carry no tension.
+/// The springs of the edges. With `rest` (as in the paper), they pull each edge towards the rest length l0;
+/// with `mean`, towards the current mean edge length. With `along`, they act only along the interface: they
+/// space the vertices evenly, but carry no tension.
 enum class PerimeterSpring { rest, mean, along };
 template <>
 struct Words<PerimeterSpring> {
@@ -33,8 +33,8 @@ template <>
 struct Words<SelfContact> {
   static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
 };
-/// Whether wall friction acts only on the part of the interface next to the wall, or through films also on
-/// the layers of the interface above (see WallContacts).
+/// Whether wall friction acts only on the part of the interface next to the wall, or also, through films, on
+/// the layers of the interface above this part (see WallContacts).
 enum class FilmFriction { off, on };
 template <>
 struct Words<FilmFriction> {
@@ -54,7 +54,7 @@ template <>
 struct Words<WallContact> {
   static constexpr Worded<WallContact> all[] = {{WallContact::edge, "edge"}, {WallContact::vertex, "vertex"}};
 };
-/// What the droplet meets: circles placed by random sequential addition, in a tilted lattice, or by the user;
+/// The obstacles of a run: circles placed by random sequential addition, in a tilted lattice, or by the user;
 /// the two wedges of a channel; a flat wall.
 enum class ObstacleLayout { random, lattice, file, channel, wall };
 template <>
@@ -92,8 +92,9 @@ template <>
 struct Words<SideWalls> {
   static constexpr Worded<SideWalls> all[] = {{SideWalls::off, "off"}, {SideWalls::on, "on"}};
 };
-/// The condition for a clog: the kinetic energy is below a threshold, or, long before that, a stable
-/// equilibrium is proved to exist nearby (equilibrium.hpp).
+/// The condition for a clog. `threshold`: the kinetic energy is below a threshold. `certified`: a stable
+/// equilibrium is proved to exist nearby (equilibrium.hpp), which is usually long before the threshold is
+/// reached.
 enum class ClogDetection { threshold, certified };
 template <>
 struct Words<ClogDetection> {
@@ -101,7 +102,14 @@ struct Words<ClogDetection> {
                                                   {ClogDetection::threshold, "threshold"}};
 };
 
-/// Half a vertex diameter and a vertex diameter for 256 vertices, the published number [sigma].
+/// What follows when a droplet breaks up: the run ends, or continues with the daughters.
+enum class BreakUp { end, daughters };
+template <>
+struct Words<BreakUp> {
+  static constexpr Worded<BreakUp> all[] = {{BreakUp::end, "end"}, {BreakUp::daughters, "daughters"}};
+};
+
+/// Half a vertex diameter, and a vertex diameter, for the published number of 256 vertices [sigma].
 inline constexpr double published_contact_range = 0.00614;
 inline constexpr double published_vertex_diameter = 0.01227;
 
@@ -112,38 +120,41 @@ inline constexpr double wetting_width = 3;
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
 struct DpParameters {
-  double line_tension = 1.0;             ///< Gamma [g rho sigma^2]
-  std::optional<double> area_stiffness;  ///< K_a [g rho / sigma]; empty: automatic
+  double line_tension = 1.0;             ///< tension Gamma of the interface [g rho sigma^2]
+  std::optional<double> area_stiffness;  ///< stiffness K_a of the area [g rho / sigma]; empty: automatic
   PerimeterSpring perimeter_spring = PerimeterSpring::along;
-  std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: automatic
-  double perimeter_stiffness_ratio = 1e-3;    ///< K_l/Gamma of springs to the rest length
+  std::optional<double> perimeter_stiffness;  ///< stiffness K_l [g rho sigma]; empty: automatic
+  double perimeter_stiffness_ratio = 1e-3;    ///< K_l divided by Gamma, for springs to the rest length
   WallContact wall_contact = WallContact::edge;
-  /// Distance from a wall's surface at which contact begins [sigma]; empty: half a vertex diameter, as
-  /// published, which makes every gap narrower by a vertex diameter.
+  /// Distance from a wall's surface at which contact begins [sigma]. Empty: half a vertex diameter, as
+  /// published. Every gap is then narrower by a vertex diameter.
   std::optional<double> contact_range = 0;
   /// Tension of the interface on a wall, divided by Gamma: (gamma_so - gamma_sw)/gamma_ow, which is minus the
   /// cosine of the contact angle (Young). It is 1 if a film of water covers all walls, as in the paper's
   /// figures. If it is empty, wall_tension() computes it from the contact angles.
   std::optional<double> wall_tension;
   /// Contact angles of the droplet's fluid at which the end of a wetted arc begins to recede or to advance
-  /// [degrees]. If they are empty, both are Young's angle, and walls do not hold the ends. Angles may be
-  /// given only with springs `along` the interface.
+  /// [degrees]. If they are empty, both are Young's angle, and walls do not hold the ends. Angles require
+  /// springs `along` the interface.
   std::optional<double> receding_angle, advancing_angle;
   double friction = 0;        ///< friction coefficient mu of walls; 0 with springs `along`
-  double yield_traction = 0;  ///< tau_y, force per length that a wall bears without any push [g rho sigma]
+  double yield_traction = 0;  ///< tau_y, force per length up to which a wall holds the interface without a
+                              ///< normal force [g rho sigma]
   SelfContact self_contact = SelfContact::on;
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
-  /// If it is empty, friction acts through films if there are friction and self-contact.
+  /// If it is empty, friction acts through films whenever friction and self-contact are both on.
   std::optional<FilmFriction> film_friction;
   Gravity gravity = Gravity::area;
-  std::optional<int> vertices;  ///< N_v; empty: automatic
-  /// S, inertial mass divided by the droplet's mass. With a larger S, the droplet's speed follows the forces
-  /// more slowly, and time steps may be sqrt(S) times as long; weight and drag stay the same.
+  std::optional<int> vertices;  ///< number N_v of vertices; empty: automatic
+  /// S, the factor that multiplies the inertial mass. With a larger S, the droplet's speed follows the forces
+  /// more slowly, and time steps may be sqrt(S) times as long. Weight and drag do not depend on S.
   double inertia = 1;
   /// Width of a neck below which a droplet has broken up [sigma]; 0: droplets do not break up.
   double break_up_neck = 0;
+  BreakUp break_up = BreakUp::end;
+  double smallest_daughter = 0.2;  ///< smaller daughters are counted and not followed [sigma]
 };
 
 /// Smallest width of a box: in a narrower box a droplet could touch its own periodic image [sigma].
@@ -193,9 +204,9 @@ inline constexpr double published_share_of_saturated = 0.125;
 
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {
-  double gap = 0.2;            ///< w_ob, smallest surface-to-surface distance [sigma]
-  double diameter = 0.3;       ///< sigma_ob; of a mixture, the mean of the drawn diameters [sigma]
-  double diameter_spread = 0;  ///< diameters are uniform in diameter (1 -+ spread)
+  double gap = 0.2;            ///< smallest surface-to-surface distance w_ob [sigma]
+  double diameter = 0.3;       ///< sigma_ob; for a mixture, the mean of the drawn diameters [sigma]
+  double diameter_spread = 0;  ///< drawn diameters are uniform in diameter * (1 -+ spread)
   /// The density of random arrays. That of a lattice or of user-supplied circles is not stored here.
   ObstacleDensity density = ObstacleDensity::share_of_saturated(published_share_of_saturated);
   double box = 500;  ///< period L across the flow [sigma]
@@ -235,26 +246,28 @@ struct ChannelParameters {
   double end = 3;            ///< h at which the run is over [sigma]
 };
 
-/// Drag on a vertex: -(zeta v + (c - 1) b_inf (v - v_cm))/N_v, zeta = b_inf (1 + (b_0/b_inf)
-/// (sigma/d)^alpha), Cheng et al. Eq. 7 for c = 1. The second term damps changes of shape only.
+/// The drag on a vertex is -(zeta v + (c - 1) b_inf (v - v_cm))/N_v, with zeta = b_inf (1 + (b_0/b_inf)
+/// (sigma/d)^alpha). For c = 1 this is Cheng et al. Eq. 7. The second term damps only changes of shape; c is
+/// the drag of motion relative to the centre of mass, divided by b_inf.
 struct DragParameters {
-  double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
-  double near_wall = 0;                 ///< b_0/b_inf; the soft disk has no near-wall drag
-  double near_wall_exponent = 4.0 / 3;  ///< alpha; 4/3 is calibrated in Appendix A of Cheng et al.
-  double near_wall_cutoff = published_contact_range;  ///< a smaller d counts as this one [sigma]
-  double relative = 1;  ///< c, drag of motion relative to the centre of mass, divided by b_inf; dp only
+  double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; gives b_inf = M g / V_t
+  double speed_exponent = 0;            ///< n: the V_t of a daughter is d^n times that of the ancestor
+  double near_wall = 0;                 ///< near-wall drag b_0/b_inf of polygons; soft disks have none
+  double near_wall_exponent = 4.0 / 3;  ///< exponent alpha; 4/3 is calibrated in Appendix A of Cheng et al.
+  double near_wall_cutoff = published_contact_range;  ///< smaller d count as this one [sigma]
+  double relative = 1;  ///< c, the relative drag divided by b_inf; only for polygons
 };
 
 /// Everything that determines the course of one run: two runs with equal parameters are equal bit for bit.
 struct RunParameters {
   Model model = Model::dp;
   DpParameters dp;
-  std::optional<double> wall_stiffness;  ///< E_w [g rho sigma^3]; empty: stiffest stable value (dp only)
+  std::optional<double> wall_stiffness;  ///< E_w [g rho sigma^3]; empty: stiffest stable value (polygons)
   ObstacleParameters obstacles;
   ChannelParameters channel;  ///< parameters of the layout `channel`
   DragParameters drag;
-  std::optional<double> time_step;  ///< [t0]; empty: automatic
-  double max_time = 2e5;            ///< [t0]
+  std::optional<double> time_step;  ///< length of a time step [t0]; empty: automatic
+  double max_time = 2e5;            ///< time at which the run ends [t0]
   std::optional<LaboratoryText> laboratory = {};
   double dwell_length = 0.05;  ///< a droplet that advances by less than this counts as resting [sigma]
   double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged

@@ -12,11 +12,11 @@ namespace clog {
 class Refusal : public Error {
  public:
   struct About {
-    std::string key = {};                    ///< key whose value is refused; empty: that of `excluded`
-    std::vector<std::string> named = {};     ///< other keys whose values the text contains
-    std::vector<std::string> excluded = {};  ///< keys that are given, too, and contradict the value
+    std::string key = {};  ///< key with the refused value; if empty, the keys are in `excluded`
+    std::vector<std::string> named = {};     ///< other keys with values that the text contains
+    std::vector<std::string> excluded = {};  ///< given keys that contradict the value, or each other
     std::string added = {};                  ///< key that the remedy adds
-    std::vector<double> nearest = {};        ///< the possible values next to the refused one, if they are few
+    std::vector<double> nearest = {};        ///< possible values next to the refused one, if there are few
   };
 
   /// `invalid KEY=VALUE (REASON) REMEDY`

@@ -66,7 +66,8 @@ struct Parameter {
   const ParameterScope* scope;
   const ParameterScope*
       automatic_in;  ///< runs in which the value, unless given, follows from other parameters
-  /// Rank among automatic values: each depends only on those of lower rank. 0: neither it nor others do.
+  /// Rank among automatic values. An automatic value depends only on automatic values of lower rank. 0: it
+  /// depends on no other automatic value, and no other one depends on it.
   int automatic_order;
   ParameterRange range;  ///< the range, if the values are numbers
   bool has_own_column;   ///< false: the column describes other parameters as well
@@ -75,6 +76,8 @@ struct Parameter {
   ParameterValue elsewhere;
   /// The value that the parameter has for all runs in files older than the parameter; unset if it is unknown.
   ParameterValue before;
+  /// The value by which runs are compared, unset for `get`; null: always `get`.
+  ParameterValue (*compared)(const RunParameters&);
 
   ValueKind kind;
   /// All values of a word; for a number, the words that select an automatic value.

@@ -13,8 +13,8 @@ namespace clog {
 
 /// Obstacles that a droplet has met.
 struct Contacts {
-  /// Number of contacts with a circle, a post of several circles, or a wedge. The same obstacle counts again
-  /// after the droplet has been farther than ContactRecord::parting away; its periodic images count as other
+  /// Number of contacts with a circle, a post of several circles, or a wedge. An obstacle counts again if the
+  /// droplet was farther away than ContactRecord::parting in between. Its periodic images count as other
   /// obstacles.
   std::int64_t number = 0;
   /// Distance of the droplet at the first contact; NaN if there was none [sigma].
@@ -70,7 +70,7 @@ class ContactRecord {
                    const Eigen::Array2d& upper);
   /// Adds a circle, or a wedge, to the data of its obstacle, and removes it from met_.
   void include(Seen& obstacle, const Place& place, double gap);
-  /// Adds the obstacle to met_ again if the droplet touches it, or has touched it and not left it since.
+  /// Adds the obstacle to met_ again if the droplet touches it, or has not left it since an earlier contact.
   void count(const Seen& obstacle, double distance);
 };
 

@@ -9,14 +9,15 @@
 namespace clog {
 
 /// r(t) of one run at evenly spaced times, in bounded memory: when the memory is full, every other sample is
-/// dropped and the spacing doubles.
+/// dropped, and the spacing doubles.
 class DisplacementRecord {
  public:
   /// Call this once per check of a run, at equal time intervals.
   void add(double time, double displacement);
 
-  /// Mean speed between the end of the transient and the moment after which the droplet advances by at most
-  /// 0.01 sigma. NaN if it travelled less than half a diameter in that time, or if travel_speed() gives NaN.
+  /// Mean speed between two moments: the end of the transient, and the moment after which the droplet
+  /// advances by at most 0.01 sigma. NaN if it travelled less than half a diameter in that time, or if
+  /// travel_speed() gives NaN.
   TravelSpeed travel_speed() const;
 
   void save(ByteWriter& bytes) const;

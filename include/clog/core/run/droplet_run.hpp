@@ -31,8 +31,8 @@ struct Words<RunStatus> {
       {RunStatus::failed, "failed"}};
 };
 
-/// Why a run failed. The first two causes depend on its parameters and seed alone, so no retry can succeed; a
-/// crash is an exception or the end of the process, which may be the machine's fault.
+/// Why a run failed. Divergence and crossing depend only on the run's parameters and seed, so no retry can
+/// succeed. A crash is an exception or the end of the process, and the machine may be its cause.
 enum class FailedBy { none, divergence, crossing, crash };
 template <>
 struct Words<FailedBy> {
@@ -50,15 +50,15 @@ struct Words<FoundBy> {
       {FoundBy::certified, "certified"}, {FoundBy::threshold, "threshold"}, {FoundBy::not_clogged, "none"}};
 };
 
-/// E_k/E_t above which the integration has failed: a free fall without drag over a whole box stays below this
+/// E_k/E_t above which the integration has failed. A free fall without drag over a whole box stays below this
 /// ratio.
 inline constexpr double diverged_energy_ratio = 1e8;
-/// Relative error of the area above which the integration has failed: compressibility and line tension keep a
-/// droplet far below it.
+/// Relative error of the area above which the integration has failed. Compressibility and line tension change
+/// the area much less.
 inline constexpr double diverged_area_error = 0.5;
 
-/// How far a droplet on a flat wall has sunk since it touched the wall without weight [sigma]; NaN in other
-/// scenes.
+/// Distance that a droplet on a flat wall sinks under its weight, after it touched the wall without weight
+/// [sigma]; NaN in other scenes.
 struct Sag {
   double centre = std::numeric_limits<double>::quiet_NaN();  ///< of the area's centroid
   double top = std::numeric_limits<double>::quiet_NaN();     ///< delta_s
@@ -72,15 +72,15 @@ struct ThinnestNeck {
 };
 
 /// The results of one run. If a clog is certified, values with the note "certified: at rest" are those of the
-/// equilibrium. An empty word is unknown: no result of this version has one, but rows of older files may.
+/// equilibrium. An empty `optional` is unknown. This happens only in rows of older files.
 struct RunResult {
   RunStatus status = RunStatus::running;
   std::optional<FoundBy> clogged_by = FoundBy::not_clogged;
   std::optional<Stability> stability = Stability::none;  ///< of a clogged droplet: stable or unknown
   std::optional<FailedBy> failed_by = FailedBy::none;
   double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
-  /// `distance` at the last check that found the droplet whole and, with self-contact, not crossing itself
-  /// [sigma].
+  /// `distance` at the last check that found the droplet intact [sigma]. With self-contact, intact means also
+  /// that the droplet does not cross itself.
   double sound_distance = 0;
   double lateral = 0;   ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;      ///< [t0]
@@ -105,39 +105,44 @@ struct RunResult {
 
 /// One droplet followed from its release until it clogs, breaks up, passes, or reaches max-time.
 ///
-/// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
-/// clog-energy at two consecutive checks, after at least ten relaxation times V_t/g, unless stability_of()
-/// finds that it balances: then the run goes on, and looks again when E_k/E_t has changed tenfold. With
-/// clog-detection=certified it also counts as soon as find_equilibrium() finds where it will rest. A droplet
-/// with a neck thinner than break-up-neck has broken up, however close to rest it is; an equilibrium with
-/// such a neck does not count. If the interface crosses itself although self-contact is on, the run fails.
-/// The course of a run depends on its parameters alone, not on how advance() is called or how clogs are
-/// found.
+/// The droplet counts as clogged when E_k/E_t has been below clog-energy at two consecutive checks, after at
+/// least ten relaxation times V_t/g (E_t: kinetic energy at terminal speed). The exception is a droplet that
+/// balances, according to stability_of(): its run continues, and tests the stability again when E_k/E_t has
+/// changed tenfold. With clog-detection=certified, the droplet also counts as clogged as soon as
+/// find_equilibrium() finds its place of rest. A droplet with a neck thinner than break-up-neck has broken
+/// up, however close to rest it is; an equilibrium with such a neck does not count. If the interface crosses
+/// itself although self-contact is on, the run fails. The course of a run depends on its parameters alone. It
+/// depends neither on the calls of advance() nor on the method that detects clogs.
 class DropletRun {
  public:
   /// Clogs and the end of the run are checked, and r(t) is recorded, once in this number of steps.
   static constexpr int steps_per_check = 64;
-  /// A snapshot is taken once in this number of steps, which take about a quarter of a second with 256
-  /// vertices.
+  /// A snapshot is taken once in this number of steps. With 256 vertices they take about a quarter of a
+  /// second.
   static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
   /// Releases the droplet as its scene defines. @param run  resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);
-  /// Releases the droplet in the same way, among given walls.
+  /// Releases the droplet as its scene defines, but among the given walls.
   DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
   /// @param initial  the droplet at its release
-  /// @param way  displacement along the flow after which the droplet has `passed` [sigma]
+  /// @param passing_distance  displacement along the flow after which the droplet has `passed` [sigma]
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
-             double way = std::numeric_limits<double>::infinity());
+             double passing_distance = std::numeric_limits<double>::infinity());
 
-  /// A run restored from a snapshot() continues bit for bit like the original, because the original also
-  /// rebuilds its contact lists when it takes the snapshot.
+  /// A run restored from a snapshot() continues bit for bit like the original. This works because the
+  /// original run, too, rebuilds its contact lists when it takes the snapshot.
   /// @param run, obstacles  as in the original run
   /// @throws Error if the bytes are not a snapshot of such a run
   static DropletRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
                            std::span<const std::byte> snapshot);
   /// The last snapshot; empty before the first one.
   const std::vector<std::byte>& snapshot() const { return snapshot_; }
+  /// The state of a run after its droplet broke up. broken() restores the result from it.
+  std::vector<std::byte> state_at_break_up() const;
+  /// A run after its droplet broke up. @throws Error if the bytes are not from state_at_break_up()
+  static DropletRun broken(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                           std::span<const std::byte> state_at_break_up);
 
   /// Continues for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is
   /// over.
@@ -146,6 +151,10 @@ class DropletRun {
   /// The run's result so far; status `running` while it is not over.
   RunResult result() const;
   double time() const { return static_cast<double>(steps_done_) * run_.time_step.value(); }
+  /// Displacement along the flow after which the droplet has `passed` [sigma].
+  double passing_distance() const { return end_; }
+  /// Sets passing_distance(), see the constructor.
+  void set_passing_distance(double distance) { end_ = distance; }
   /// Displacement along and across the flow since release [sigma].
   Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
   /// Displacement of a point, given in the droplet's frame, from the place of release [sigma].
@@ -172,7 +181,7 @@ class DropletRun {
   std::int64_t max_steps_;
   double first_quiet_time_;
   int quiet_checks_ = 0;
-  // E_k/E_t at the last look at the droplet's stability, NaN if it moves since
+  // E_k/E_t when the stability of the droplet was tested last; NaN if the droplet has moved since then
   double balanced_at_ = std::numeric_limits<double>::quiet_NaN();
   RunStatus status_ = RunStatus::running;
   FoundBy clogged_by_ = FoundBy::not_clogged;
@@ -191,13 +200,16 @@ class DropletRun {
   ThinnestNeck neck_;
   std::vector<std::byte> snapshot_;
 
+  void save(ByteWriter& bytes) const;
+  static DropletRun restore(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                            std::span<const std::byte> saved);
   bool is_in_range() const;
   bool is_passage() const;
   bool has_fallen() const { return time() > first_quiet_time_; }
   void check();
   SteadyTravel steady(const Dwells& dwells) const;
   Sag sag(const Droplet& droplet) const;
-  void start_afresh_and_take_snapshot();
+  void rebuild_lists_and_take_snapshot();
   bool has_broken();
   bool has_crossed_itself() const;
   Eigen::Array2d last_displacement() const;

@@ -16,7 +16,7 @@ struct Dwell {
   double begin = std::numeric_limits<double>::quiet_NaN();  ///< time at which the dwell began [t0]
 };
 
-/// The dwells of a run that were longer than all before them.
+/// The dwells of a run that were longer than all dwells before them.
 struct Dwells {
   static constexpr std::size_t most = 8;
 
@@ -36,8 +36,8 @@ struct Dwells {
   void keep(const Dwell& dwell);
 };
 
-/// Follows a droplet's distance, and finds its dwells. The first dwell begins at the release. When the
-/// droplet is farther than dwell-length from where the present dwell began, this dwell ends and the next one
+/// Follows a droplet's distance, and finds its dwells. The first dwell begins at the release. A dwell ends
+/// when the droplet is farther than dwell-length from the place where this dwell began; then the next dwell
 /// begins.
 class DwellRecord {
  public:

@@ -16,7 +16,7 @@ struct Extreme {
 struct Passage {
   Extreme largest_shape_parameter;
   Extreme largest_speed;  ///< speed along the flow [V_t]
-  /// Speed along the flow [V_t]. The beginning is left out, because the droplet starts from rest.
+  /// Speed along the flow [V_t]. The beginning is excluded, because the droplet starts from rest.
   Extreme smallest_speed;
 
   /// @param is_falling  whether the droplet has had time to reach its terminal speed

@@ -6,14 +6,14 @@
 
 namespace clog {
 
-/// Distance and time of a run after its start has been forgotten; NaN for a run that ended before.
+/// Distance and time of a run after a fixed starting time; NaN for a run that ended before this time.
 struct SteadyTravel {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< along the flow [sigma]
   double time = std::numeric_limits<double>::quiet_NaN();      ///< [t0]
 };
 
-/// Keeps the displacement at a fixed time, from which on a run counts for the steady speed. This time is
-/// known before the run and is the same for all droplets of a terminal speed, so it does not prefer fast
+/// Stores the displacement at a fixed time. The steady speed of a run counts from this time on. The time is
+/// known before the run and is the same for all droplets of one terminal speed, so it does not favour fast
 /// droplets.
 class SteadyRecord {
  public:

@@ -17,9 +17,9 @@ enum class WallsFrom {
            ///< time
 };
 
-/// Which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for each
-/// ObstacleLayout. A new scene needs an enumerator of ObstacleLayout, a file that defines its Scene, a line
-/// in scene.cpp, and the steps of docs/developer/add-a-scene.md.
+/// Defines which obstacles a droplet meets, where it starts, and where its path ends. There is one scene for
+/// each ObstacleLayout. A new scene needs an enumerator of ObstacleLayout, a file that defines its Scene, a
+/// line in scene.cpp, and the steps of docs/developer/add-a-scene.md.
 struct Scene {
   Finding finding;
   WallsFrom walls_from;
@@ -32,7 +32,7 @@ struct Scene {
   /// Refuses impossible combinations before automatic values are known; check_each() has checked each
   /// parameter alone. @throws Error
   void (*check)(const RunParameters& run);
-  /// Computes the values that follow from others, and refuses values that are impossible together with them.
+  /// Computes the values that follow from other values. Refuses given values that contradict them.
   /// @throws Error
   void (*resolve)(RunParameters& run);
   /// Diameter of the sharpest expected bend of the interface [sigma].
@@ -47,16 +47,16 @@ struct Scene {
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
   /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has.
   /// @param start  place of release of the centre of mass, in the coordinates of the walls [sigma]
-  double (*way)(const RunParameters& run, const Eigen::Array2d& start);
+  double (*passing_distance)(const RunParameters& run, const Eigen::Array2d& start);
   /// Converts a place from the coordinates of the walls to those of the file of circles, in the first period
   /// [sigma]; nullptr without a file.
   Eigen::Array2d (*place_in_file)(const RunParameters& run, const Eigen::Array2d& place) = nullptr;
 };
 
-/// Where the way of a droplet begins that was released at `x`, in the coordinates of the file of circles. The
-/// void that is nearest to an entrance may be across the border of the array; of the droplet's periodic
-/// images, the one nearest to the entrance is meant then [sigma].
-double beginning_of_way(const ObstacleParameters& obstacles, double x);
+/// The x at which the path of a droplet begins that was released at `x`, in the coordinates of the file of
+/// circles [sigma]. The void nearest to an entrance may be across the border of the array. In this case the
+/// result is the x of the droplet's periodic image that is nearest to the entrance.
+double start_of_path(const ObstacleParameters& obstacles, double x);
 
 /// Whether a droplet was released in the nearest void, because an obstacle was at its place on the entrance.
 /// @param x, y  place of the release, in the coordinates of the file of circles [sigma]

@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// Writes plain values one after the other, as they are in memory. Only the same program on the same kind of
-/// machine can read them.
+/// Writes plain values one after the other, as they are in memory. Only the same program on a machine of the
+/// same kind can read them.
 class ByteWriter {
  public:
   template <class T>

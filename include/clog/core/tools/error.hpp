@@ -4,8 +4,8 @@
 
 namespace clog {
 
-/// An error of the user or the environment: what is wrong, why, and a remedy, in one line.
-/// Programs print it and leave with exit code 2. Our own mistakes are asserts, not Errors.
+/// An error of the user or the environment. The text says in one line what is wrong, why, and what to do.
+/// Programs print it and exit with code 2. Programming mistakes are asserts, not Errors.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

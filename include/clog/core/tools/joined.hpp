@@ -5,8 +5,8 @@
 
 namespace clog {
 
-/// The words in one line, separated by `between`. (g++ 12 with -O3 reports fmt::join as a write beyond an
-/// array.)
+/// The words in one line, separated by `between`. (fmt::join is not used, because g++ 12 with -O3 warns
+/// wrongly of a write beyond an array.)
 template <class Words>
 std::string joined(const Words& words, std::string_view between = ", ") {
   std::string text;

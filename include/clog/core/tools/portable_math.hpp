@@ -3,10 +3,10 @@
 #include <cmath>
 
 /// Functions whose last bit does not depend on the processor. glibc has two versions of its double functions,
-/// with and without fused multiply-adds, and uses the version that the processor supports. The last bit of
-/// their results differs in about one of some thousand cases. The long double functions of glibc have only
-/// one version. (std::sqrt, std::hypot and rounding already give the same bits everywhere.) The functions
-/// here are too slow for loops over vertices.
+/// with and without fused multiply-adds, and uses the version that the processor supports. The results of the
+/// two versions differ in the last bit in about one of some thousand cases. The long double functions of
+/// glibc have only one version. (std::sqrt, std::hypot and rounding already give equal bits on all
+/// processors.) The functions here are too slow for loops over vertices.
 ///
 /// sin, cos and tan are plain arithmetic. The other functions are instructions of the x87, which a processor
 /// of another manufacturer may round differently in the 64th bit. This almost never affects the 53 bits of a

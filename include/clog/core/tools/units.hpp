@@ -15,7 +15,7 @@ inline constexpr double gravity = 1.0;
 inline constexpr double rest_area = std::numbers::pi / 4;
 inline constexpr double droplet_mass = rest_area;
 
-/// Edge length of the regular polygon whose area is `area` [sigma]:
+/// Edge length of the regular polygon with this area [sigma]:
 /// l0 = sqrt(4 a N tan(pi/N)) / N, Cheng et al., on how a simulation begins.
 inline double regular_edge_length(int num_vertices, double area = rest_area) {
   return std::sqrt(4 * area * num_vertices * portable::tan(std::numbers::pi / num_vertices)) / num_vertices;

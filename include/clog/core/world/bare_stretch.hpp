@@ -14,9 +14,9 @@ struct Stretch {
   double end = 0;    ///< larger than the period if the stretch continues across the period's border
 };
 
-/// The widest bare stretch of an array along an axis, if it is so wide that the array's length is probably a
-/// mistake: wider than a droplet, and wider than a droplet plus twice the second widest stretch. Otherwise
-/// nullopt, as for a single circle, which may be the unit cell of an array.
+/// The widest bare stretch of an array along an axis, if it suggests a mistake in the array's length. This is
+/// the case if the stretch is wider than a droplet plus twice the second widest stretch. Otherwise nullopt,
+/// as for a single circle, which may be the unit cell of an array.
 /// @param centre  of a circle along the axis: &Obstacle::x or &Obstacle::y
 /// @param period  of the array along it [sigma]; no circle is wider
 std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,

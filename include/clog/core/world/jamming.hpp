@@ -12,12 +12,12 @@ namespace clog {
 double saturated_density(double diameter, double gap);
 
 /// The density that a random array should have [1/sigma^2]; nullopt if as many obstacles as possible are
-/// wanted. A share is relative to the mean density of saturated arrays of these diameters and this gap, for
-/// any box.
+/// requested. A share is relative to the mean density of saturated arrays of these diameters and this gap,
+/// for any box.
 std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 
-/// The density of a random array divided by the mean density of saturated arrays of these diameters and this
-/// gap; nullopt if as many obstacles as possible are wanted.
+/// The density of a random array as a share of the mean density of saturated arrays of these diameters and
+/// this gap. nullopt if as many obstacles as possible are requested.
 std::optional<double> share_of_saturated(const ObstacleParameters& obstacles);
 
 /// The largest density of a random array that every seed can reach [1/sigma^2]. It is eight standard

@@ -28,9 +28,9 @@ inline constexpr double largest_angle_error = 0.1;
 /// as a smaller one.
 double largest_tilt(LatticeKind kind);
 
-/// The lattice whose tilt is nearest to lattice_angle, among those whose periods are at most `box` and
-/// `length` (0: `box`), and at least two spacings and `narrowest_period`. If several lattices are equally
-/// near, the one with the largest box is chosen. nullopt if no lattice has such periods.
+/// The lattice with the tilt nearest to lattice_angle. Its periods are at most `box` and `length` (0: `box`),
+/// and at least two spacings and `narrowest_period`. If several lattices are equally near, the one with the
+/// largest box is chosen. nullopt if no lattice has such periods.
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// nearest_lattice(); nullopt if its tilt is more than largest_angle_error away from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
@@ -52,9 +52,9 @@ std::string tilt_text(LatticeKind kind, const CommensurateLattice& lattice);
 /// Pitch, row spacing, tilt and period, in words. @param obstacles  resolved
 std::string lattice_text(const ObstacleParameters& obstacles);
 
-/// A lattice of spacing diameter + gap, which the seed shifts. After the shift, the box's centre, where
-/// droplets are released, is at a uniformly distributed place of the unit cell. Places where a droplet
-/// touches an obstacle are excluded, unless a droplet touches obstacles everywhere.
+/// A lattice of spacing diameter + gap, shifted according to the seed. The shift moves the box's centre,
+/// where droplets are released, to a uniformly distributed place of the unit cell. Places where a droplet
+/// touches an obstacle are excluded, unless there are no other places.
 /// @param parameters  resolved: box, length and angle are those of a CommensurateLattice
 ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 

@@ -15,9 +15,9 @@ struct Angle {
       : radians(in_radians), cos(portable::cos(in_radians)), sin(portable::sin(in_radians)) {}
 };
 
-/// Infinite convex wall: all points that, seen from the tip, lie within `half_angle` of the axis. A circle
-/// rounds the tip. With half_angle = pi/2 the wall is a half-plane. Two wedges, tip to tip, form a narrow
-/// channel (Cheng et al., Fig. 1).
+/// Infinite convex wall: all points that, seen from the tip, are within `half_angle` of the axis. A circle
+/// rounds the tip. With half_angle = pi/2 the wall is a half-plane. Two wedges with opposite tips form a
+/// narrow channel (Cheng et al., Fig. 1).
 struct Wedge {
   Eigen::Array2d tip{0, 0};                 ///< place in the box [sigma]; wedges have no periodic images
   Eigen::Array2d axis{1, 0};                ///< unit vector from the tip into the wall
@@ -25,7 +25,8 @@ struct Wedge {
 
   double radius = 0;  ///< radius of the rounded tip [sigma]
 
-  /// Centre of the rounded tip. The wall is everything within `radius` of a sharp wedge with its tip there.
+  /// Centre of the rounded tip. The wall is everything within `radius` of a sharp wedge with its tip at this
+  /// centre.
   Eigen::Array2d centre() const { return tip + radius * axis; }
   bool is_flat() const { return half_angle.radians >= std::numbers::pi / 2; }
 };

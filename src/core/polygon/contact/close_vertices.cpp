@@ -48,8 +48,8 @@ class Search {
   }
 
  private:
-  /// list_along() finds the pairs at most this many vertices apart. Pairs farther apart are in groups that
-  /// are not neighbours; list_far() finds these.
+  /// list_along() finds pairs that are at most this many vertices apart. Pairs that are farther apart belong
+  /// to groups that are not neighbours; list_far() finds them.
   static constexpr int last_along = 2 * group_size - 1;
   static_assert(last_along + group_size <= close_vertices_beyond);
 
@@ -68,8 +68,8 @@ class Search {
   bool excluded_are_long() const { return (c_.exclusion - 1) * c_.longest_edge >= c_.arc; }
 
   /// Returns false only if no pair along the contour is close. Tests all pairs up to 7 vertices apart. Pairs
-  /// 9 apart, with a reach longer by one edge, represent those 8 to 10 apart; pairs 13 apart, with a reach
-  /// longer by two edges, represent those 11 to 15 apart.
+  /// that are 9 apart, with a reach longer by one edge, represent pairs that are 8 to 10 apart. Pairs that
+  /// are 13 apart, with a reach longer by two edges, represent pairs that are 11 to 15 apart.
   bool along_may_meet() const {
     constexpr int last_tested = 7, third = 9, fifth = 13;
     if (c_.exclusion > last_tested || excluded_are_long()) return true;
@@ -87,7 +87,7 @@ class Search {
   }
 
   void list_along() {
-    // A pair that is more than half the contour apart is found from its other vertex.
+    // A pair that is more than half the contour apart is found from the other vertex of the pair.
     const int last = std::min(last_along, c_.n / 2);
     for (int k = excluded_are_long() ? 1 : c_.exclusion; k <= last; ++k) {
       const int end = 2 * k == c_.n ? k : c_.n;
@@ -104,8 +104,9 @@ class Search {
     }
   }
 
-  /// Lists pairs whose groups are not neighbours, by means of bounding circles of the groups. No point of an
-  /// arc is farther from the midpoint of the arc's ends than half of the arc's length.
+  /// Lists pairs with groups that are not neighbours, by means of bounding circles of the groups. A bounding
+  /// circle is centred between the ends of the group's arc: no point of the arc is farther from there than
+  /// half of the arc's length.
   void list_far() {
     const int num_groups = (c_.n + group_size - 1) / group_size;
     const int stride = num_groups + lanes;
@@ -113,7 +114,7 @@ class Search {
     double *x = groups_.data(), *y = x + stride, *radius = y + stride;
     for (int g = 0; g < num_groups; ++g) {
       const int begin = g * group_size,
-                end = begin + group_size - 1;  // entries beyond the last repeat the first
+                end = begin + group_size - 1;  // entries beyond the last entry repeat the first ones
       x[g] = (c_.x[begin] + c_.x[end]) / 2;
       y[g] = (c_.y[begin] + c_.y[end]) / 2;
       radius[g] = (c_.along[end] - c_.along[begin]) / 2;

@@ -8,8 +8,8 @@
 /// find the same pairs.
 namespace clog::kernel {
 
-/// A closed contour. The arrays repeat its beginning in `close_vertices_beyond` entries beyond its end; there
-/// `along` continues to grow.
+/// A closed contour. The arrays repeat the beginning of the contour in `close_vertices_beyond` entries beyond
+/// its end. In these entries, `along` continues to grow.
 struct CloseSearch {
   int n;
   const double *x, *y;
@@ -20,8 +20,8 @@ struct CloseSearch {
 };
 inline constexpr int close_vertices_beyond = 24;
 
-/// Finds, once each, all pairs of vertices within `reach` of each other that are at least `exclusion`
-/// vertices apart along the contour, or at least the distance `arc`.
+/// Finds each pair of vertices within `reach` of each other once. The vertices of a pair must be at least
+/// `exclusion` vertices or at least the distance `arc` apart along the contour.
 /// @param groups  working memory
 void find_close_vertices(const CloseSearch& search, std::vector<double>& groups,
                          std::vector<VertexPair>& pairs);

@@ -20,8 +20,8 @@ CrossingDepth::CrossingDepth(const Contour& contour, const CrossingPlace& place)
   const double along = (to_vertex * tangent_).sum() / length_;
   fraction_ = std::clamp(along, 0.0, 1.0);
   is_beside_ = fraction_ == along;
-  way_to_edge_ = fraction_ * edge - to_vertex;
-  distance_ = way_to_edge_.matrix().norm();
+  vector_to_edge_ = fraction_ * edge - to_vertex;
+  distance_ = vector_to_edge_.matrix().norm();
   for (const int end : place.ends)
     if (end >= 0) limit_by(contour, end, place.own);
 }
@@ -49,17 +49,17 @@ void CrossingDepth::add_gradient(double factor, std::vector<VertexPush>& to) con
   if (is_limited())
     add_gradient_of_slip(factor, to);
   else
-    add_gradient_of_way(factor * to_edge(), to);
+    add_gradient_of_vector_to_edge(factor * to_edge(), to);
 }
 
 void CrossingDepth::add_gradient_of_shift(const Eigen::Array2d& factor, std::vector<VertexPush>& to) const {
   if (!is_limited()) {
-    add_gradient_of_way(factor, to);
+    add_gradient_of_vector_to_edge(factor, to);
     return;
   }
   const double part = (factor * to_edge()).sum();
   add_gradient_of_slip(part, to);
-  add_gradient_of_way(slip_.distance / distance_ * (factor - part * to_edge()), to);
+  add_gradient_of_vector_to_edge(slip_.distance / distance_ * (factor - part * to_edge()), to);
 }
 
 void CrossingDepth::add_gradient_of_slip(double factor, std::vector<VertexPush>& to) const {
@@ -68,18 +68,20 @@ void CrossingDepth::add_gradient_of_slip(double factor, std::vector<VertexPush>&
   to.push_back({slip_.own_end, -slip_.fraction * factor * slip_.direction});
 }
 
-/// Adds the gradient of the scalar product of `factor` and the way from the vertex to the nearest point of
+/// Adds the gradient of the scalar product of `factor` and the vector from the vertex to the nearest point of
 /// the edge.
-void CrossingDepth::add_gradient_of_way(const Eigen::Array2d& factor, std::vector<VertexPush>& to) const {
+void CrossingDepth::add_gradient_of_vector_to_edge(const Eigen::Array2d& factor,
+                                                   std::vector<VertexPush>& to) const {
   if (!is_beside_) {
     to.push_back({vertex_, -factor});
     to.push_back({fraction_ > 0 ? end_ : begin_, factor});
     return;
   }
-  // The nearest point slides along the edge with the vertex, so the way is always normal to the edge.
+  // The nearest point slides along the edge with the vertex, so the vector to it is always normal to the
+  // edge.
   const Eigen::Array2d normal = turned(tangent_);
   const double along = (factor * tangent_).sum(), across = (factor * normal).sum();
-  const double on_end = fraction_ * across - along * (way_to_edge_ * normal).sum() / length_;
+  const double on_end = fraction_ * across - along * (vector_to_edge_ * normal).sum() / length_;
   to.push_back({vertex_, -across * normal});
   to.push_back({begin_, (across - on_end) * normal});
   to.push_back({end_, on_end * normal});

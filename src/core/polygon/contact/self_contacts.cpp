@@ -44,18 +44,18 @@ void SelfContacts::update(const DropletState& state, const Travel& travel) {
                                  .maxCoeff();
     if (hold(std::sqrt(farthest2), travel)) return;
   }
-  renew(state, travel);
+  rebuild(state, travel);
 }
 
 bool SelfContacts::hold(double moved, const Travel& travel) const {
   return reference_.size() > 0 && moved + travel.relative < skin_;
 }
 
-void SelfContacts::renew(const DropletState& state, const Travel& travel) {
-  // The skin is thin enough to exclude neighbours along a straight contour at rest, unless the droplet moves
-  // very fast.
+void SelfContacts::rebuild(const DropletState& state, const Travel& travel) {
+  // With the usual skin, no neighbours along a straight contour at rest are listed. A very fast droplet needs
+  // a thicker skin.
   const double usual_skin = (exclusion_ * rest_edge_ - range_) / 4;
-  rebuild(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
+  rebuild_with_skin(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
 }
 
 double SelfContacts::measure_edges(const double* x, const double* y, int n) {
@@ -96,7 +96,7 @@ void SelfContacts::find_close(const double* x, const double* y, double longest_e
                               groups_, close_);
 }
 
-void SelfContacts::rebuild(const DropletState& state, double skin) {
+void SelfContacts::rebuild_with_skin(const DropletState& state, double skin) {
   skin_ = skin;
   const int n = static_cast<int>(state.size());
   const double* x = state.position.data();
@@ -126,7 +126,7 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   };
   const auto add_edges_of = [&](int vertex, int other) {
     add_if_near({vertex, other});
-    // The edge that ends at `other` is found through its first vertex, if that is near, too.
+    // The edge that ends at `other` is found through its first vertex, if that vertex is near, too.
     const int before = other > 0 ? other - 1 : n - 1;
     if (!is_near(vertex, before)) add_if_near({vertex, before});
   };

@@ -11,7 +11,7 @@ namespace clog {
 namespace {
 
 /// Number of edges on each side of a crossing's edge to which the vertex may have slid in a step. Edges
-/// further along the contour, or behind a sharp corner, may belong to the other side of a finger.
+/// farther along the contour, or behind a sharp corner, may belong to the other side of a finger.
 constexpr int beside = 2;
 /// Number of edges on each side of a crossing's edge that the vertex's own edges may cross.
 constexpr int far = 8;
@@ -19,8 +19,8 @@ constexpr int far = 8;
 double cross_product(const Eigen::Array2d& a, const Eigen::Array2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// Whether the vertex passed through the edge during the drift. All vertices moved in straight lines, so the
-/// area that vertex and edge span is a quadratic function of time; the vertex is on the edge's line where
-/// this area vanishes.
+/// area of the triangle of vertex and edge is a quadratic function of time. The vertex is on the edge's line
+/// where this area vanishes.
 bool passes_through(const SelfContacts::Pair& pair, const Contour& contour,
                     const SelfCrossings::Drift& drift) {
   const int end = pair.edge + 1 < contour.size ? pair.edge + 1 : 0;
@@ -34,7 +34,7 @@ bool passes_through(const SelfContacts::Pair& pair, const Contour& contour,
   const Eigen::Array2d edge = edge_after - edge_change, way = way_after - way_change;
   const double before = cross_product(edge, way), after = cross_product(edge_after, way_after);
   if ((before > 0) == (after > 0)) return false;
-  // The root of before + linear t + square t^2 between 0 and 1, in the form that does not cancel.
+  // The root of before + linear * t + square * t^2 between 0 and 1, in the form without cancellation.
   const double square = cross_product(edge_change, way_change), linear = after - before - square;
   const double root = std::sqrt(std::max(0.0, linear * linear - 4 * square * before));
   const double sum = linear + std::copysign(root, linear);
@@ -51,7 +51,8 @@ bool are_neighbours(const SelfContacts& contacts, const SelfContacts::Pair& pair
          contacts.are_neighbours(pair.vertex, (pair.edge + 1) % num_vertices);
 }
 
-/// Neighbours along the contour do not repel each other before the vertex has passed through the edge.
+/// A vertex and an edge that are neighbours along the contour repel each other only after the vertex has
+/// passed through the edge.
 double range_of(const SelfContacts& contacts, const SelfContacts::Pair& pair, int num_vertices) {
   return are_neighbours(contacts, pair, num_vertices) ? 0 : contacts.range();
 }
@@ -100,7 +101,7 @@ void SelfCrossings::find_chain(const Contour& contour, const SelfCrossing& cross
   }
 }
 
-/// The vertex at which the edges end in this direction, -1 if they go on for `far` edges.
+/// The vertex at which the edges end in this direction; -1 if they continue for `far` edges.
 int SelfCrossings::end_of_edges(const Contour& contour, const SelfCrossing& crossing, int step) {
   auto edge = static_cast<int>(crossing.edge);
   for (int k = 0; k < far; ++k) {
@@ -111,8 +112,8 @@ int SelfCrossings::end_of_edges(const Contour& contour, const SelfCrossing& cros
   return -1;
 }
 
-/// Finds whether and how the interface still crosses itself here. Neighbours that have passed through, too,
-/// form a run; the edges at both ends of the run then cross the crossing's edges.
+/// Finds whether and how the interface still crosses itself here. The vertex and the neighbours that have
+/// passed through with it form a run. The edges at both ends of the run cross the crossing's edges.
 CrossingPlace SelfCrossings::look_at(const Contour& contour, const SelfCrossing& crossing,
                                      const std::vector<SelfCrossing>& all) {
   const int n = contour.size;
@@ -137,8 +138,8 @@ CrossingPlace SelfCrossings::look_at(const Contour& contour, const SelfCrossing&
           .own = {own_edge(1), own_edge(n - 1)}};
 }
 
-/// Whether the vertex has passed back. Otherwise sets the crossing's edge to the nearest one of its
-/// neighbours.
+/// Whether the vertex has passed back. If it has not, sets the crossing's edge to the nearest of this edge
+/// and its neighbours.
 bool SelfCrossings::heals(const Contour& contour, const Drift& drift, SelfCrossing& crossing) {
   const auto vertex = static_cast<int>(crossing.vertex);
   find_chain(contour, crossing, beside, false);
@@ -153,7 +154,7 @@ bool SelfCrossings::heals(const Contour& contour, const Drift& drift, SelfCrossi
   return false;
 }
 
-void SelfCrossings::renew(const Contour& contour, std::vector<SelfCrossing>& crossings) {
+void SelfCrossings::rebuild(const Contour& contour, std::vector<SelfCrossing>& crossings) {
   places_.clear();
   muted_.clear();
   if (crossings.empty()) return;
@@ -187,7 +188,8 @@ bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const Sel
     if (!is_muted(pair) && passes_through(pair, contour, drift)) passed.push_back(pair);
   };
   for (const SelfContacts::Pair& pair : contacts.pairs()) add_if_passed(pair);
-  // Vertices close along the contour are not listed, but may pass through each other's edges in a sharp fold.
+  // Vertices that are close along the contour are not listed, but may pass through each other's edges in a
+  // sharp fold.
   const int n = contour.size, exclusion = contacts.exclusion();
   for (int vertex = 0; vertex < n; ++vertex)
     for (int apart = 1; apart < exclusion; ++apart)
@@ -198,8 +200,8 @@ bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const Sel
       std::erase_if(state.crossings, [&](SelfCrossing& one) { return heals(contour, drift, one); });
   state.num_healed += static_cast<std::int64_t>(num_healed);
   for (const SelfContacts::Pair& pair : passed) state.crossings.push_back({pair.vertex, pair.edge});
-  // Muted contacts move with the nearest edge.
-  renew(contour, state.crossings);
+  // Muted contacts are those around the nearest edge, which may have changed.
+  rebuild(contour, state.crossings);
   return true;
 }
 
@@ -220,7 +222,7 @@ double SelfCrossings::find_pushes(const Contour& contour, const SelfContacts& co
   return energy;
 }
 
-/// The crossing of this vertex that moves it in contacts that a crossing mutes; null if there is none. A
+/// The crossing that shifts this vertex in the contacts that `crossing` mutes; null if there is none. A
 /// neighbour of the crossed vertex may have passed through nearby edges, too.
 const CrossingDepth* SelfCrossings::depth_of(int vertex, int crossing, int num_vertices) const {
   const CrossingPlace& muting = places_[crossing];
@@ -232,8 +234,8 @@ const CrossingDepth* SelfCrossings::depth_of(int vertex, int crossing, int num_v
   return nullptr;
 }
 
-/// Adds the pushes of a muted contact, with crossed vertices where they would be without the crossing.
-/// Returns its energy.
+/// Adds the pushes of a muted contact. For this, crossed vertices are at the places that they would have
+/// without the crossing. Returns the contact's energy.
 double SelfCrossings::push_off(const Contour& contour, const Muted& muted, double range) {
   const std::array<int, 3> vertices = {muted.pair.vertex, muted.pair.edge,
                                        (muted.pair.edge + 1) % contour.size};
@@ -251,7 +253,7 @@ double SelfCrossings::push_off(const Contour& contour, const Muted& muted, doubl
   const double distance = away.matrix().norm(), overlap = range - distance;
   if (overlap <= 0) return 0;
   constexpr double round_off = 1e-9;
-  if (distance > round_off * range) {  // otherwise it is on the edge, and pushed to neither side
+  if (distance > round_off * range) {  // otherwise the push has no direction
     const std::array<double, 3> shares = {1, fraction - 1, -fraction};
     for (std::size_t k = 0; k < vertices.size(); ++k) {
       const Eigen::Array2d force = shares[k] * overlap / distance * away;

@@ -37,8 +37,8 @@ HWY_INLINE Vectors operator*(V factor, const Vectors& v) {
   return {hn::Mul(factor, v.x), hn::Mul(factor, v.y)};
 }
 
-/// Half edges, from a vertex to the middle of its edge, in contact with a circle. NearestOnHalves in
-/// dp_step_circles-inl.hpp computes the same points faster.
+/// Half edges, each from a vertex to the middle of its edge, in contact with a circle. NearestOnHalves in
+/// dp_step_circles-inl.hpp computes the points of Half faster.
 struct Half {
   M touches;
   V length;
@@ -70,7 +70,7 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     const auto vertices = [&](int k) { return Vectors{load_at(x + i + k), load_at(y + i + k)}; };
     const Vectors begin = vertices(0), end = vertices(1);
     const Vectors middle = far * vertices(-1) + near * begin + near * end + far * vertices(2);
-    // No point of a half edge is farther from the half's vertex than the half is long.
+    // No point of a half edge is farther from the half's vertex than the length of the half.
     const V first_way = hn::Sqrt((middle - begin).square()), second_way = hn::Sqrt((middle - end).square());
     const auto may_touch = [&](const Vectors& vertex, V way) {
       const V farthest = hn::Add(reach, way);
@@ -85,7 +85,8 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     hn::StoreMaskBits(D(), any, bits);
     touches.touching |= static_cast<unsigned>(bits[0]) << i;
 
-    // Adds up the forces in the order of the halves; of each half, the force on its own vertex comes first.
+    // Adds up the forces in the order of the halves. For each half edge, the force on the half's own
+    // vertex comes first.
     const auto if_touches = [](const Half& half, V share) {
       return Vectors{hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.x)),
                      hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.y))};

@@ -4,8 +4,8 @@
 
 #include "clog/core/polygon/contact/wall_contacts.hpp"
 
-/// The arithmetic of WallTouches, for a vector of edges or vertices at once. Compiled for several instruction
-/// sets and without fused multiply-adds, so that all give the same bits.
+/// The arithmetic of WallTouches for a vector of edges or vertices. It is compiled for several instruction
+/// sets, without fused multiply-adds, so that all give the same bits.
 namespace clog::kernel {
 
 struct Circle {
@@ -38,7 +38,7 @@ struct TouchKernel {
                      double* direction_x, double* direction_y, double* ratios);
 };
 
-/// The kernel for this processor's widest instruction set, or for that of use_instruction_set().
+/// The kernel for this processor's widest instruction set, or for the one set by use_instruction_set().
 TouchKernel touch_kernel();
 
 }  // namespace clog::kernel

@@ -11,17 +11,17 @@
 namespace clog {
 namespace {
 
-// A droplet moves 0.05 sigma in about 1000 steps, so renewals of the lists cost almost nothing. The list of
-// obstacles that may be nearest to a vertex gets longer with a thicker skin, so this list has the thinner
-// one.
+// A droplet moves 0.05 sigma in about 1000 steps, so rebuilding the lists costs almost nothing. A thicker
+// skin makes the list of obstacles that may be nearest to a vertex longer, so this list has a thinner skin.
 constexpr double touching_skin = 0.05;
 constexpr double nearest_skin = 0.02;
 
-/// Parts of the interface closer than this many films along the contour belong to the same layer: at the tip
-/// of a fold, where the interface turns, there is no room for a film.
+/// Parts of the interface that are closer along the contour than this many films belong to the same layer. At
+/// the tip of a fold, where the interface turns, there is no room for a film.
 constexpr double arc_of_a_fold = 3;
-/// An edge that is lower than its layer by more than this part of a film is in the next layer that is low
-/// enough. So an edge that gets a layer below itself only slowly, at the tip of a fold, is not thrown off.
+/// An edge belongs to a higher layer only if it is lower than that layer by at most this fraction of a film.
+/// At the tip of a fold, another part of the interface may move below an edge before the edge has risen. This
+/// edge keeps its layer, so it is not thrown off.
 constexpr double layer_tolerance = 0.25;
 
 }  // namespace
@@ -39,7 +39,7 @@ void WallContacts::update(const DropletState& state, const Travel& travel) {
             .maxCoeff();
     if (hold(std::sqrt(farthest2), travel)) return;
   }
-  renew(state, travel);
+  rebuild(state, travel);
 }
 
 bool WallContacts::hold(double moved, const Travel& travel) const {
@@ -47,10 +47,10 @@ bool WallContacts::hold(double moved, const Travel& travel) const {
   return reference_.size() > 0 && sway * (moved + travel.absolute) < skin_;
 }
 
-void WallContacts::renew(const DropletState& state, const Travel& travel) {
+void WallContacts::rebuild(const DropletState& state, const Travel& travel) {
   // For a fast droplet, lists with the usual skin would not stay valid until the next update.
   const double usual_skin = keep_ == Keep::nearest_to_vertex ? nearest_skin : touching_skin;
-  rebuild(state, std::clamp(2 * refined_sway * travel.absolute, usual_skin, widest_skin));
+  rebuild_with_skin(state, std::clamp(2 * refined_sway * travel.absolute, usual_skin, widest_skin));
 }
 
 void WallContacts::gather_nearby(const DropletState& state) {
@@ -78,8 +78,8 @@ void WallContacts::gather_nearby(const DropletState& state) {
         nearby_.push_back({centre[0], centre[1], wedge.radius});
       }
   if (keep_ != Keep::nearest_to_vertex) return;
-  // In a sparse array the nearest obstacle may be far away, so the search extends to one period, within which
-  // a periodic array has an obstacle.
+  // In a sparse array the nearest obstacle may be far away. So the search extends to one period: within this
+  // distance, a periodic array has an obstacle.
   for (window.margin = 0.5; window.margin < 2 * array_->period().along(); window.margin *= 2) {
     nearby_.clear();
     array_->gather(window, nearby_);
@@ -89,7 +89,7 @@ void WallContacts::gather_nearby(const DropletState& state) {
   }
 }
 
-void WallContacts::rebuild(const DropletState& state, double skin) {
+void WallContacts::rebuild_with_skin(const DropletState& state, double skin) {
   skin_ = skin;
   num_points_ = state.size();
   reference_.resize(2 * num_points_ + edges_per_group);
@@ -111,8 +111,8 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   largest_radius_ = nearby_.empty() ? 0 : largest->radius;
 }
 
-/// Lists the edges that a circle may touch until the lists are renewed. An obstacle that gets within range
-/// before the renewal is within range + skin now.
+/// Lists the edges that a circle may touch until the lists are rebuilt. An obstacle that gets within range
+/// before the next rebuild is within range + skin now.
 /// @param fine  the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& position, const Eigen::ArrayXd& fine) {
   const int n = static_cast<int>(num_points_);
@@ -155,7 +155,8 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
   const Eigen::Array2d centre{circle.x, circle.y};
   const double lowest = circle.radius + range_;  // distance of layer 0 from the centre
   const double far = (lowest + highest_layer * film_ + skin_) * (1 + rounding);
-  // The middle of an edge that the circle may touch is nearer than this, and so are the parts below it.
+  // If the circle may touch an edge, the edge's middle is closer to the circle's centre than farthest_middle.
+  // The same holds for the parts of the interface between that edge and the circle.
   const double farthest_middle = far + longest_edge_;
   nearby_groups_.clear();
   for (int group = 0; group < static_cast<int>(bounds_.size()); ++group)
@@ -219,7 +220,7 @@ int WallContacts::num_parts_below(const Obstacle& circle, int edge, const Eigen:
   return crossings;
 }
 
-/// Measures the distances of all vertices to all circles nearby, and to the nearest.
+/// Measures the distance of each vertex from all circles nearby, and from the nearest of them.
 void WallContacts::measure_distances(const DropletState& state) {
   const auto num_nearby = static_cast<Eigen::Index>(nearby_.size());
   distances_.resize(state.size(), num_nearby);
@@ -232,9 +233,9 @@ void WallContacts::measure_distances(const DropletState& state) {
   }
 }
 
-/// Lists the obstacles that a vertex may touch, or that may be its nearest, until the lists are renewed. An
-/// obstacle that becomes the nearest before the renewal is at most 2 skins farther away now than the present
-/// nearest one.
+/// Lists the obstacles that a vertex may touch, or that may be nearest to it, until the lists are rebuilt. An
+/// obstacle may become the nearest before the next rebuild only if it is now at most 2 skins farther away
+/// than the nearest one.
 void WallContacts::list_by_vertex(const DropletState& state) {
   measure_distances(state);
   candidates_.resize(num_points_);

@@ -24,8 +24,8 @@ StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) 
   return stiff_modes(dp, wall_stiffness, circumference, circumference / *dp.vertices);
 }
 
-/// The stiffness of an automatic contact, and with it that of friction, follows from the step. So only the
-/// other modes limit the step.
+/// The stiffness of an automatic contact follows from the step, and the stiffness of friction follows from
+/// that of the contact. So only the other modes limit the step.
 double largest_step_with_automatic_contact(const DpParameters& dp) {
   const StiffModes modes = stiff_modes_of_circle(dp, 1);
   const double others = modes.sum() - modes.contact - modes.friction;
@@ -221,8 +221,8 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
                 stiffest_omega_dt, *run.wall_stiffness, 0.99 * largest);
           },
           {"wall-stiffness"});
-  // A contact that is too soft to carry the droplet lets obstacles sink into it. So if the vertices of an
-  // eighth of the circumference carry the weight M g, they must sink by less than half the contact range.
+  // Obstacles sink too far into a contact that is too soft. So the vertices of an eighth of the circumference
+  // must be able to carry the weight M g with an overlap of less than half the contact range.
   const double softest = units::droplet_mass / (*dp.vertices / 8.0) / (vertex_diameter / 4);
   require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
           *run.wall_stiffness, [&] {

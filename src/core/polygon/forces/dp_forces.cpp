@@ -64,7 +64,8 @@ InterfaceTerms DpForces::interface(double area, double perimeter) const {
   const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
   InterfaceTerms interface;
   interface.line_tension = dp_.line_tension;
-  // The deviations from the mean length add up to zero, so the derivative of the mean drops out of the force.
+  // The deviations from the mean length add up to zero, so the derivative of the mean has no effect on the
+  // force.
   interface.spring = has_tension ? *dp_.perimeter_stiffness * *dp_.vertices : 0;
   interface.spring_length =
       dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : perimeter / *dp_.vertices;
@@ -114,7 +115,7 @@ double DpForces::deepest_overlap(const DropletState& state) const {
 double DpForces::self_contact_energy(const Contour& contour, const DropletState& state) const {
   SelfCrossings crossings;
   std::vector<SelfCrossing> crossed = state.crossings;
-  crossings.renew(contour, crossed);
+  crossings.rebuild(contour, crossed);
   double energy = contact_stiffness_ * crossings.find_pushes(contour, self_);
   for (const SelfContacts::Pair& pair : self_.pairs()) {
     if (crossings.is_muted(pair)) continue;

@@ -49,11 +49,11 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   return {state_at_rest(regular_polygon(n, area), place, {period.along(), period.across()}), area};
 }
 
-/// The droplet grows with all kinds of contact and evenly spread vertices, whatever its own interface is.
-/// Bunched vertices would make the interface too stiff for any step, and obstacles would slip between
-/// vertices that are far apart. Springs along the interface have no energy, so they must be weak for the
-/// minimiser. Under a large tension they must be strong, because contact then pulls vertices together at the
-/// corners of a squeezed droplet.
+/// The droplet grows with all kinds of contact and with evenly spread vertices, whatever the run's own
+/// interface is. If vertices were bunched, the interface would be too stiff for any step, and obstacles would
+/// slip between the other vertices, which would be far apart. Springs along the interface have no energy, so
+/// they must be weak for the minimiser. Under a large tension they must be strong, because contact then pulls
+/// vertices together at the corners of a squeezed droplet.
 RunParameters with_growing_interface(RunParameters run) {
   run.dp.inertia = 1;  // the droplet starts at rest
   run.dp.perimeter_spring = PerimeterSpring::along;
@@ -62,7 +62,7 @@ RunParameters with_growing_interface(RunParameters run) {
   run.dp.self_contact = SelfContact::on;
   run.dp.receding_angle.reset();  // walls hold the droplet only from the start of the run
   run.dp.advancing_angle.reset();
-  run.dp.gravity = Gravity::vertex;  // without weight the springs need no reaction on the area
+  run.dp.gravity = Gravity::vertex;  // without weight, the springs need no reaction on the area
   return run;
 }
 
@@ -101,7 +101,7 @@ bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpFor
   bool rests = minimize_fire(rest_forces, state, options).converged ||
                settle(rest_forces, state, longer, damping_rate).converged;
   // Springs along the interface have no energy, so the remaining sliding may follow a small cycle for ever.
-  // Weaker springs drive the sliding less.
+  // Weaker springs drive this sliding less.
   constexpr double weaker = 0.3;
   constexpr int most_weakenings = 4;
   for (int i = 0; i < most_weakenings && !rests; ++i) {

@@ -6,9 +6,10 @@
 
 namespace clog {
 
-/// Puts a small circle into the void nearest to the centre, and grows it to full size in stages, each of
-/// which ends with a relaxation. In this way, no obstacle is ever inside the droplet. (The minimisation of
-/// the energy would not remove such an obstacle, because it ignores an obstacle that touches no vertex.)
+/// Puts a small circle into the void nearest to the centre, and grows it to full size in stages. Each stage
+/// ends with a relaxation. In this way, no obstacle is ever inside the droplet. (A minimisation of the energy
+/// would not remove such an obstacle, because an obstacle that touches no vertex does not contribute to the
+/// energy.)
 /// @param run  resolved
 /// @throws Error if there is no room, or the droplet does not relax
 DropletState release_polygon(const RunParameters& run, const ObstacleArray& obstacles);

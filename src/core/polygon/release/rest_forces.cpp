@@ -37,12 +37,12 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
   near_.measure(kernel_, contact_, *forces_, a);
   near_.keep(kernel_, *forces_, refined_sway * way_, 2 * way_);
   plan_.make(near_.walls());
-  kernel_.clear_pushes(n_, a);  // the plan may have other groups than before
+  kernel_.clear_pushes(n_, a);  // the new plan may have other groups than the old one
   wedges_ = wedges_in(state.frame, forces_->wedges());
 }
 
-/// Computes the force by a kick from rest, without drag. The time of the kick is such that the velocity
-/// gained equals the force.
+/// Computes the force as the velocity after a kick from rest, without drag. The time of the kick is chosen so
+/// that this velocity equals the force.
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   assert(looked_at_.size() > 0);
   const kernel::StepArrays& a = memory_.arrays();

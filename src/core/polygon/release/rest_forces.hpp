@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// The negative gradient of DpForces' energy, computed by the fast passes of a step, because releases and
-/// searches for rest need it thousands of times.
+/// The negative gradient of DpForces' energy. Releases and searches for rest need it thousands of times, so
+/// the fast passes of a step compute it.
 class RestForces {
  public:
   /// @param run     resolved parameters
@@ -35,8 +35,8 @@ class RestForces {
   WettedWalls::Forces wetting_;
   NearContacts near_;
   double way_ = 0;  // displacement up to which the contacts are valid [sigma]
-  // Positions at the last update of the contacts: all x, then all y, then unused numbers that fill the last
-  // vector.
+  // Positions at the last update of the contacts: all x, then all y, then padding up to a whole number of
+  // SIMD vectors.
   Eigen::ArrayXd looked_at_;
 
   bool contacts_hold(const Travel& travel) const;

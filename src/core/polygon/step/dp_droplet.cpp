@@ -13,12 +13,12 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
       vertex_mass_(run.dp.inertia * units::droplet_mass / *run.dp.vertices),
       stepper_(std::make_unique<DpStepper>(run, obstacles, forces_)) {
   state_ = std::move(initial);
-  DpDroplet::start_afresh();
+  DpDroplet::rebuild_lists();
 }
 
 DpDroplet::~DpDroplet() = default;
 
-void DpDroplet::start_afresh() { stepper_->start_afresh(state_); }
+void DpDroplet::rebuild_lists() { stepper_->rebuild_lists(state_); }
 
 void DpDroplet::advance(int num_steps) {
   num_integrated_steps_ += stepper_->move(state_, num_steps, measures_dissipation_ ? &work_ : nullptr);

@@ -53,14 +53,14 @@ struct RefinedEdgeVectors {
   }
 };
 
-/// The points of half edges that are closest to a circle's centre. Half in touch_kernel.cpp computes the same
-/// more slowly, with the same bits on all processors; dp_step.test.cpp compares them.
+/// The points of half edges that are closest to a circle's centre. Half in touch_kernel.cpp computes these
+/// points more slowly, with the same bits on all processors; dp_step.test.cpp compares them.
 struct NearestOnHalves {
   V fraction;  ///< fraction of the half edge from its beginning to the point
   V dx, dy;    ///< vector from the circle's centre
   V distance2;
 
-  /// @param span  1: the whole half edge counts, 0: its beginning alone
+  /// @param span  1: the whole half edge counts, 0: only its beginning counts
   HWY_INLINE NearestOnHalves(V begin_x, V begin_y, V end_x, V end_y, V centre_x, V centre_y, V span) {
     const V ex = hn::Sub(end_x, begin_x), ey = hn::Sub(end_y, begin_y);
     const V to_x = hn::Sub(centre_x, begin_x), to_y = hn::Sub(centre_y, begin_y);
@@ -72,7 +72,7 @@ struct NearestOnHalves {
     distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
   }
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
-  /// The force on half edges that touch the circle, stiffness (reach - distance).
+  /// The force on half edges that touch the circle, stiffness * (reach - distance).
   HWY_INLINE Pair push(M touch, V reach, V stiffness) const {
     // For a point exactly at the centre, the direction is 0 and not NaN.
     const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;
@@ -90,8 +90,8 @@ struct HalvesAtCircle {
 };
 
 /// Forces of `lanes` edges of a window on their vertices. The force on an edge's middle acts on the four
-/// vertices that determine it: `begin` is for the edge's first vertex, `end` for its second, `far` for each
-/// of the two beyond them.
+/// vertices that determine it. `begin` is the force on the edge's first vertex, `end` the force on its
+/// second, and `far` the force on each of the two vertices beyond them.
 struct WindowPushes {
   Pair begin, end, far;
 

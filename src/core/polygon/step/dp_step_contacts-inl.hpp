@@ -1,4 +1,4 @@
-/// What touches the contour and what is near it; part of dp_step_kernel.cpp.
+/// Contacts of the contour, and obstacles near it; part of dp_step_kernel.cpp.
 
 #if defined(CLOG_DP_STEP_CONTACTS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_DP_STEP_CONTACTS
@@ -55,7 +55,7 @@ struct NearestPoints {
 class EdgePushes {
  public:
   HWY_INLINE EdgePushes() : x_(all(0)), y_(all(0)), along_x_(all(0)), along_y_(all(0)) {}
-  /// Pushes edges off the points that they touch, with the force stiffness (reach - distance). The place of
+  /// Pushes edges off the points that they touch, with the force stiffness * (reach - distance). The place of
   /// the closest point on the edge determines how the edge's two vertices share the force.
   HWY_INLINE Pair add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
     // For a point exactly on the edge, the direction is 0 and not NaN.
@@ -79,13 +79,13 @@ class EdgePushes {
   V x_, y_, along_x_, along_y_;
 
   static HWY_INLINE void hand_out(V whole, V end, double* p) {
-    // Adds to memory at once, because data just stored elsewhere could not be loaded immediately.
+    // The sum goes to memory at once: data that was just stored elsewhere could not be loaded immediately.
     store(hn::Add(load(p), hn::Add(hn::Sub(whole, end), to_next_lane(end))), p);
     p[lanes] += hn::ExtractLane(end, lanes - 1);
   }
 };
 
-/// Numbers of the lanes, repeated twice: in ascending order, and in descending order.
+/// The numbers of the lanes, first in ascending, then in descending order; each order is repeated twice.
 constexpr auto orders = [] {
   std::array<std::array<std::int64_t, std::size_t{2} * lanes>, 2> order{};
   for (int k = 0; k < 2 * lanes; ++k) {
@@ -108,7 +108,7 @@ class PairedVertices {
   }
   HWY_INLINE const Pair& place() const { return place_; }
 
-  /// Adds to the vertices the reaction to the force on the edges. Reads and writes whole aligned vectors: a
+  /// Adds to the vertices the reaction to the force on the edges. Reads and writes whole aligned vectors. A
   /// load across two vectors that were just stored would have to wait for the cache.
   HWY_INLINE void push_back(const Pair& push, const StepArrays& a) const {
     const int beyond = first_ & (lanes - 1), aligned = first_ - beyond;
@@ -216,7 +216,7 @@ class WedgeVectors {
     V dx, dy;         ///< vector from the centre of the tip
     V across;         ///< distance from the axis, with its sign
     V to_flank;       ///< distance from the sharp wedge
-    M is_before_tip;  ///< where the tip is nearer, so that `to_flank` is not the distance
+    M is_before_tip;  ///< where the tip is nearer than the flank, so that `to_flank` is not the distance
 
     HWY_INLINE V distance2() const { return hn::MulAdd(dx, dx, hn::Mul(dy, dy)); }
   };
@@ -264,9 +264,10 @@ void push_off_wedges(int n, const WedgePlace* wedges, std::size_t num_wedges, do
   }
 }
 
-/// v^(-4/3), as the fourth power of y = v^(-1/3). The first guess of y uses the bits of a number, which are
-/// nearly its logarithm; its error is at most 0.103. Five terms of the series of (1 - error)^(-1/3) leave an
-/// error of 5e-6 in y; three terms of the series of (1 - error)^(-4/3) correct the fourth power.
+/// v^(-4/3), as the fourth power of y = v^(-1/3). The first guess of y uses the bits of v, which are nearly
+/// the logarithm of v; the error of this guess is at most 0.103. Five terms of the series of (1 -
+/// error)^(-1/3) reduce the error of y to 5e-6. Three terms of the series of (1 - error)^(-4/3) then correct
+/// the fourth power.
 inline V power_minus_four_thirds(V v) {
   const hn::RebindToSigned<D> bits;
   const V scaled = hn::MulAdd(hn::ConvertTo(D(), hn::BitCast(bits, v)), all(-1.0 / 3),
@@ -323,7 +324,8 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     }
   }
   shrink_to_wedge_distances(n, walls, shortest, a, a.rate);
-  // This loop is separate from the search, so that the processor overlaps more of its long chains.
+  // This loop is separate from the search, so that the processor overlaps more of the loop's long chains of
+  // operations.
   for_vectors(n, [&](int i, auto) CLOG_INLINE {
     const V distance = load(a.rate + i);
     V rise;

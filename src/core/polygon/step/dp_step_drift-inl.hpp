@@ -73,7 +73,7 @@ Survey survey(int n, const double* walls, const double* self, const StepArrays& 
     sum_vy = hn::Add(sum_vy, keep(vy));
     speed2 = hn::Max(speed2, keep(square(vx, vy)));
     perimeter = hn::Add(perimeter, keep(length));
-    // Zero lengths beyond the last edge do not count.
+    // The zero lengths beyond the last edge are excluded.
     shortest = hn::Min(shortest, hn::IfThenElse(hn::Gt(keep(all(1)), all(0)), length, all(1e300)));
     if (walls != nullptr) {
       const V dx = hn::Sub(x, load_at(walls + i)), dy = hn::Sub(y, load_at(walls + n + i));
@@ -107,7 +107,7 @@ struct CouplingVectors {
 
   HWY_INLINE explicit CouplingVectors(const Coupling& k)
       : c{all(k.c_x), all(k.c_y)}, a{all(k.a_x), all(k.a_y)}, pressure(all(k.half_pressure)) {}
-  /// The sum of c - G^T a and the term of an implicit pressure.
+  /// c - G^T a plus the term of an implicit pressure.
   HWY_INLINE Pair pull(int i, bool on_area, bool implicit_pressure, const StepArrays& arrays) const {
     Pair pull = c;
     if (on_area) {

@@ -17,8 +17,8 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// Adds to each vertex its part of the interface on a circle: of each half edge in contact, three quarters of
-/// the length belong to the vertex at its end, one quarter to the other vertex of the edge.
+/// Adds to each vertex its part of the interface on a circle. Three quarters of the length of each half edge
+/// in contact belong to the vertex at its end, one quarter to the other vertex of the edge.
 void add_wetted(const WallWindow& window, V span, const StepArrays& a, const ContourArray& wetted) {
   const V reach = all(window.reach), zero = all(0);
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
@@ -65,9 +65,8 @@ struct CircleAtVertices {
   }
 };
 
-/// Adds one circle's normal forces and friction to the forces on a group. Returns the work that the wall
-/// took. This function does for a vector of vertices what WallFriction::follow() does for one vertex;
-/// dp_step.test.cpp compares the two.
+/// Adds one circle's normal forces and friction to the forces on a group. Returns the work done on the wall.
+/// WallFriction::follow() does the same for one vertex; dp_step.test.cpp compares the two functions.
 template <bool wets>
 HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
                         const WallGrip& grip, const StepArrays& a) {
@@ -87,14 +86,15 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
     if constexpr (wets) touched_or_held = hn::Or(touched_or_held, hn::Gt(load(walls.wetted + i), all(0)));
     if (hn::AllFalse(D(), touched_or_held)) continue;
     const CircleAtVertices at(circle, i, a);
-    // At the end of a contact, the last middle pulls the next vertex a little towards the wall (refined_far
-    // is negative); this does not count as a normal force.
+    // At the end of a contact, the middle of the last edge pulls the next vertex a little towards the wall
+    // (refined_far is negative). This pull does not count as a normal force.
     const V push = hn::Max(hn::MulAdd(push_x, at.normal_x, hn::Mul(push_y, at.normal_y)), all(0));
     V bears = hn::Mul(coefficient, push);
     if constexpr (wets) bears = hn::MulAdd(traction, load(walls.wetted + i), bears);
     const M touches = hn::Gt(bears, all(0));
 
-    // The wall's point closest to the vertex is radius * normal. Slips count along (-normal_y, normal_x).
+    // The wall's point closest to the vertex is radius * normal. The slip is positive along (-normal_y,
+    // normal_x).
     const V anchor_x = load(walls.anchor_x + k), anchor_y = load(walls.anchor_y + k);
     const V slip =
         hn::IfThenElseZero(is_known, hn::MulSub(at.normal_y, anchor_x, hn::Mul(at.normal_x, anchor_y)));
@@ -107,7 +107,7 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
     store(hn::IfThenElse(rests, anchor_y, hn::MulSub(radius, at.normal_y, hn::Mul(held, at.normal_x))),
           walls.anchor_y + k);
     // Work on the wall by the integrator's trapezoidal rule: the old force acts on half of the path, the new
-    // one on the other half. If the vertex has left the wall, the spring's energy is lost.
+    // force on the other half. If the vertex has left the wall, the spring's energy is lost.
     const V before = load(walls.slip + k);
     const V lost =
         hn::IfThenElse(touches, hn::Mul(hn::Add(before, held), hn::Sub(slip, held)), hn::Mul(before, before));

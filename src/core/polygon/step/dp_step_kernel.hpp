@@ -8,9 +8,9 @@
 #include "core/polygon/contact/wedge_place.hpp"
 
 /// The step of a deformable polygon as two passes over its vertices, written with vector types and compiled
-/// for several instruction sets. Tests compare it with plain loops (polygon/forces/reference_forces.hpp).
-/// A pass has no branch per vertex, no call and no allocation; square roots are Newton iterations if the
-/// instruction set has a first guess for them.
+/// for several instruction sets. Tests compare it with plain loops (polygon/forces/reference_forces.hpp). A
+/// pass has no branch per vertex, no call and no allocation. Square roots are Newton iterations if the
+/// instruction set has an instruction for the first guess.
 namespace clog::kernel {
 
 /// Number of consecutive edges that are tested for contact at once, for any instruction set.
@@ -33,11 +33,12 @@ struct StepArrays {
   ContourArray length;         ///< lengths of the edges
   ContourPair push;            ///< kick of the vertices by contact
   ContourPair wetting;         ///< part of the kick by wetted walls that derives from no energy
-  ContourPair grad_x, grad_y;  ///< 6 a times the gradients of the centroid's x and of its y
+  ContourPair grad_x, grad_y;  ///< gradients of the centroid's x and of its y, times 6 a
   ContourArray rate;           ///< drag rate of a vertex [1/t0], if the rates differ
-  ContourArray damping, kept;  ///< s and s (1 - h2 r), with the rate; see KickCoefficients
-  ContourPair kicked;          ///< w, if keeps_kicked; see KickCoefficients
-  ContourPair chord;           ///< vector between a vertex's neighbours, for an implicit pressure
+  ContourArray damping,
+      kept;            ///< s and s (1 - h2 r) of KickCoefficients
+  ContourPair kicked;  ///< w of KickCoefficients, if keeps_kicked
+  ContourPair chord;   ///< vector between a vertex's neighbours, for an implicit pressure
 };
 
 /// Sums over the edges.
@@ -48,8 +49,8 @@ struct Sums {
   double moment_y;
 };
 
-/// A kick is the change of a vertex's velocity by a force in half a time step h. F below is a force times
-/// h/(M/N_v).
+/// A kick is the change of a vertex's velocity by a force in half a time step h. In the comments below, F is
+/// a force times h/(M/N_v).
 struct InterfaceKick {
   double line_tension;  ///< tension of the interface at zero length of the springs
   double spring;        ///< stiffness of springs that carry tension
@@ -63,11 +64,11 @@ struct AreaForce {
   double centre_x, centre_y;  ///< centroid of the area [sigma]
   double x, y;                ///< kick, without the reaction to the springs along the interface
 };
-/// Coefficients of one kick. With r a vertex's drag rate and s = 1/(1 + h1 r),
+/// Coefficients of one kick. With r the drag rate of a vertex and s = 1/(1 + h1 r),
 ///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a).
 /// Here w is the velocity after the kick by the force and the vertex's own drag, and v' is the next velocity.
-/// c and a are known only after the sums over all vertices (see Coupling); until then, q takes the place of
-/// the velocity. So one kick ends a time step and begins the next.
+/// c and a are known only after the sums over all vertices (see Coupling). Until then, q is stored in place
+/// of the velocity. So one kick ends a time step and begins the next.
 struct KickCoefficients {
   double closing_ratio;  ///< h1 / half_step: the half step that ends a time step, divided by the half step of
                          ///< the forces
@@ -75,40 +76,41 @@ struct KickCoefficients {
   double weight;         ///< (h1 + h2) / half_step, or h1 / half_step if no time step begins
   double half_step;      ///< the half step of the forces [t0]
   bool keeps_kicked;     ///< whether the kick stores w for power()
-  /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. A half kick that ends a
-  /// step of another length uses the value of the step that begins.
+  /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. If a half kick ends a
+  /// step and the next step has another length, the value is that of the next step.
   double softening = 0;
 };
 /// The terms of a kick. Each combination is compiled separately.
 struct KickTerms {
-  bool elastic;                     ///< springs that carry tension; otherwise those along the interface
-  bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
-  bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
-  bool coupled;                     ///< whether the force on a vertex depends on the velocities of all
+  bool elastic;       ///< whether springs carry tension; otherwise they act along the interface
+  bool on_area;       ///< whether weight and mean drag act on the area; the vertices are then coupled
+  bool varying_rate;  ///< whether vertices have different drag rates (StepArrays::rate); otherwise all have
+                      ///< `rate`
+  bool coupled;       ///< whether the force on a vertex depends on the velocities of all
   bool implicit_pressure;           ///< see Coupling
-  double rate;                      ///< [1/t0]
+  double rate;                      ///< drag rate of all vertices [1/t0]
   double relative_rate, area_rate;  ///< rates of the drag by the mean velocities of vertices and area [1/t0]
 };
-/// Mean velocities, and what they contribute to the velocities of the vertices.
+/// Mean velocities, and their contributions to the velocities of the vertices.
 ///
 /// An implicit pressure is that of the area A + dt^2 d^2A/dt^2, which the droplet would have if its present
 /// acceleration lasted for a time step. The acceleration contains all forces on vertices and area, including
-/// the added pressure, and the drag on the area; it neglects the vertices' own drag and the change of the
+/// the added pressure, and the drag on the area. It neglects the vertices' own drag and the change of the
 /// area's gradient. For this one mode this is Newmark's method with beta = 1, while all other modes move by
-/// velocity Verlet. The mode's frequency omega becomes omega/sqrt(1 + (omega dt)^2), so it is stable for
-/// every step. If the area is not accelerated, as at rest and in steady fall, nothing is added.
+/// velocity Verlet. The mode's frequency omega becomes omega/sqrt(1 + (omega dt)^2), so the mode is stable
+/// for every step. If the area is not accelerated, as at rest and in steady fall, nothing is added.
 struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< mean velocity of the vertices
   double area_x = 0, area_y = 0;  ///< velocity of the area's centroid
   double c_x = 0, c_y = 0;
-  double a_x = 0, a_y = 0;   ///< includes the force on the area; divided by 6 a
+  double a_x = 0, a_y = 0;   ///< a of KickCoefficients, with the force on the area; divided by 6 areas
   double half_pressure = 0;  ///< pressure that the implicit pressure adds, as a kick
 };
 /// Powers, each for M/N_v = 1.
 struct Power {
-  double drag;                ///< sum r_i v_i^2, the vertices' own share of the dissipation
-  double spreading;           ///< sum F_i v_i, with F_i the kick that spreads vertices along the interface
-  double spread_x, spread_y;  ///< sum F_i
+  double drag;       ///< dissipation by the vertices' own drag, sum r_i v_i^2
+  double spreading;  ///< power of the kicks F_i that spread vertices along the interface, sum F_i v_i
+  double spread_x, spread_y;  ///< sum of these kicks
 };
 /// A circle and the edges_per_group edges from `first` on; the bits of `edges` mark those that may touch the
 /// circle.
@@ -119,9 +121,9 @@ struct WallWindow {
   std::uint8_t edges;
   std::uint8_t layer;  ///< see WallContacts
 };
-/// Forces of edges on their vertices, as windows store them. The first three of six arrays contain the x of
-/// the forces on an edge's first vertex, on its second vertex, and on each of the two vertices beyond them;
-/// the other three arrays contain the y. All entries outside the windows are zero.
+/// Forces of edges on their vertices, as windows store them. The first three of six arrays contain the x
+/// components: of the forces on an edge's first vertex, on its second vertex, and on each of the two vertices
+/// beyond them. The other three arrays contain the y components. All entries outside the windows are zero.
 struct WindowPushArrays {
   double* first;  ///< entry of edge 0; readable from two groups before to two groups behind the windows
   std::ptrdiff_t stride;
@@ -130,7 +132,7 @@ inline constexpr int num_window_push_arrays = 6;
 /// Repulsion by circles; see WallPlan.
 struct WallWindows {
   const WallWindow* all;
-  int num_own;  ///< number of the first windows, of which no two share an edge
+  int num_own;  ///< number of leading windows; no two of them share an edge
   int num_all;
   /// Groups of vertices that windows may push. Group -1 and the group behind the last one belong to the
   /// contour's other end.
@@ -148,8 +150,8 @@ struct HoldingCircle {
   bool wraps;
   WindowPushArrays pushes;  ///< forces of this circle
 };
-/// Repulsion and friction of circles; see WallHold. Every group of vertices that a circle may push
-/// has edges_per_group entries of anchor_x, anchor_y, slip, and one of holds.
+/// Repulsion and friction of circles; see WallHold. Every group of vertices that a circle may push has
+/// edges_per_group entries in each of anchor_x, anchor_y and slip, and one entry in holds.
 struct HoldingCircles {
   const HoldingCircle* all;
   std::size_t num;
@@ -214,23 +216,23 @@ struct StepKernel {
   /// gaps are positive.
   double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
                         const StepArrays& arrays, double* gaps);
-  /// The edges of one item with a gap of at most `way`, as bits.
+  /// The edges of one item that have a gap of at most `way`, as bits.
   std::uint8_t (*edges_within)(const double* gaps, double way);
-  /// Computes the gap of every item's closest pair. Returns as circle_gaps().
+  /// Computes the gap of the closest pair of every item. Returns the same as circle_gaps().
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
   /// clear_pushes() sets the pushes on all vertices to zero. push() finds the pushes of circles, on the
-  /// groups of vertices that `walls` names, and the pushes of the droplet on itself. It returns the smallest
+  /// groups of vertices listed in `walls`, and the pushes of the droplet on itself. It returns the smallest
   /// distance of a listed pair [sigma].
   void (*clear_pushes)(int n, const StepArrays& arrays);
   double (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                  const Contact& contact, const StepArrays& arrays);
-  /// Does the same as push(), but for all groups, and includes the circles' friction.
+  /// Like push(), but for all groups, and with the circles' friction.
   Held (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                         const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                         const StepArrays& arrays);
   /// Adds the forces of wedges on vertices that are nearer to a wedge's surface than `range` [sigma]. Edges
-  /// need no test: they meet a wedge's tip first, which is listed as a circle.
+  /// are not tested: an edge touches the tip of a wedge before its flank, and the tip is listed as a circle.
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);
   /// Computes rate = far_rate (relative + near_wall (sigma/d)^exponent), with d a vertex's distance to the
@@ -240,17 +242,17 @@ struct StepKernel {
   /// First pass: forces and velocities.
   Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays);
-  /// Powers at the end of a time step, from the velocities w that the kick kept in `kicked`. Called between
-  /// the passes, if requested.
+  /// Powers at the end of a time step, from the velocities w that the kick stored in `kicked`. Call this
+  /// between the passes.
   Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
                  const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
-  /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Sums include the perimeter
-  /// for elastic droplets only, and moments if forces act on the area.
+  /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges of the new positions. The sums
+  /// include the perimeter only for elastic droplets, and moments only if forces act on the area.
   Sums (*drift)(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
                 double dt, const StepArrays& arrays);
 };
 
-/// The kernel for these terms, of the widest instruction set of this processor or of the one in
+/// The kernel for these terms. Its instruction set is the widest of this processor, or the one set by
 /// use_instruction_set().
 StepKernel step_kernel(const KickTerms& terms);
 

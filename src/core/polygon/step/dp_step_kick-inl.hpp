@@ -18,27 +18,27 @@ namespace clog::kernel::HWY_NAMESPACE {
 /// Sums for the coupled drag, where G is 6 a times the centroid's gradient, and s = 1/(1 + h r).
 struct KickSums {
   double force_x, force_y;        ///< kick by the force on the area
-  double w_x, w_y;                ///< sum w
-  double gw_x, gw_y;              ///< sum G w
-  double gg_xx, gg_xy, gg_yy;     ///< sum s G G^T
-  double s;                       ///< sum s
-  double g_xx, g_xy, g_yx, g_yy;  ///< sum s G
-  // For an implicit pressure; n is the chord turned outwards, twice the area's gradient.
-  double nn = 0, nf = 0;      ///< sum n.n, sum n.F
-  double ng_x = 0, ng_y = 0;  ///< sum G n
+  double w_x, w_y;                ///< sum of w
+  double gw_x, gw_y;              ///< sum of G w
+  double gg_xx, gg_xy, gg_yy;     ///< sum of s G G^T
+  double s;                       ///< sum of s
+  double g_xx, g_xy, g_yx, g_yy;  ///< sum of s G
+  // The next members are for an implicit pressure; n is the chord turned outwards, twice the area's gradient.
+  double nn = 0, nf = 0;      ///< sums of n.n and of n.F
+  double ng_x = 0, ng_y = 0;  ///< sum of G n
 };
 
 /// Computes the coupled drag and the force on the area. The velocities after the kick are
 ///   v_i = w_i + s_i (e V - G_i^T (b V_a - R)),  V = mean v_i,  V_a = sum G_i v_i.
-/// Here s_i = 1/(1 + h r_i), w_i is the velocity after the kick by the force on the vertex and its own drag,
-/// e and b are half a step times the relative rate and the area rate, and R is the kick by the force on the
-/// area. These are four linear equations for V and V_a; V is eliminated. The drag is implicit because the
+/// Here s_i = 1/(1 + h r_i), and w_i is the velocity after the kick by the force on the vertex and by its own
+/// drag. e and b are half a step times the relative rate and the area rate. R is the kick by the force on the
+/// area. These are four linear equations for V and V_a; V is eliminated. The drag is implicit, because the
 /// part that acts on the area is stiff for an elongated droplet: b sum |G_i|^2 grows with the square of the
 /// droplet's length and perimeter. An implicit pressure adds H n_i to the kick, where n_i is the chord turned
 /// outwards:
 ///   H = -q/(1 + q sum n_j.n_j) (sum n_j.F_j + sum G_j n_j.(R - d V_a)).
 /// Here q is the softening, and R - d V_a the force on the area with the area's drag. The last factor is the
-/// area's acceleration.
+/// acceleration of the area.
 template <bool implicit_pressure>
 HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force, const KickCoefficients& k,
                            const KickSums& sums) {
@@ -73,8 +73,8 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
     const double ng_x = unit * sums.ng_x, ng_y = unit * sums.ng_y;
     if constexpr (implicit_pressure) {
       outwards += ng_x * kick_x + ng_y * kick_y;
-      // If s is the same for all vertices, the pressure moves them by s n, and the sum of these vectors is
-      // zero.
+      // If s is the same for all vertices, the pressure moves the vertices by s n. The sum of these
+      // displacements is zero.
       const double pressed = k.closing_ratio * softening * one_nth * sums.s;
       right_x -= pressed * ng_x * outwards;
       right_y -= pressed * ng_y * outwards;
@@ -147,7 +147,7 @@ HWY_INLINE CentroidGradient centroid_gradient(const Pair& place, const Pair& cen
           keep(hn::Mul(corners_y, chord.y)), keep(hn::NegMulAdd(corners_y, chord.x, twice_area))};
 }
 
-/// Sums over the vertices that couple() needs.
+/// Sums over the vertices, for couple().
 template <bool varying_rate>
 struct KickVectors {
   V spread_x = all(0), spread_y = all(0);
@@ -193,7 +193,7 @@ struct KickVectors {
     gg_yy = hn::MulAdd(sg.yx, g.yx, hn::MulAdd(sg.yy, g.yy, gg_yy));
   }
 
-  /// @param one_s  s, if it is the same for all vertices; the sums up to here do not contain this factor
+  /// @param one_s  s, if it is the same for all vertices. The sums do not contain this factor yet.
   template <bool implicit_pressure>
   HWY_INLINE KickSums total(int n, const AreaForce& force, double one_s) const {
     const auto w = sums(w_x, w_y, spread_x, spread_y);
@@ -235,7 +235,7 @@ struct KickVectors {
 template <bool elastic, bool on_area, bool varying_rate, class Keep>
 HWY_INLINE Pair kick_force(const Corner& c, const Pair& chord, const Pair& push,
                            const InterfaceVectors& along, KickVectors<varying_rate>& total, Keep keep) {
-  // Slow operations come first, because the processor does not look far ahead.
+  // Slow operations come first, because the processor reorders only nearby instructions.
   V spread;
   if constexpr (!elastic)
     spread = keep(
@@ -270,7 +270,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
   const bool keeps_kicked = coefficients.keeps_kicked;
   const double one_s = varying_rate ? 1 : 1 / (1 + coefficients.h1 * terms.rate);
   const V same_s = all(one_s), same_kept = all(one_s * (1 - coefficients.h2 * terms.rate));
-  KickVectors<varying_rate> total{};  // an aggregate: a constructor would be compiled for no instruction set
+  KickVectors<varying_rate> total{};  // an aggregate: constructors are not compiled for the instruction set
   Corner last;
   last.length = all(a.length[-1]);
   last.tx = all(a.tangent.x[-1]);

@@ -46,7 +46,7 @@ HWY_INLINE void store(Pair v, const ContourPair& p, std::ptrdiff_t i) {
 
 HWY_INLINE double sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
-/// The sums over the lanes of four vectors, in the time of two.
+/// The sums over the lanes of four vectors, in the time of two such sums.
 HWY_INLINE std::array<double, 4> sums(V a, V b, V c, V d) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
   const V ab = hn::Add(hn::InterleaveLower(D(), a, b), hn::InterleaveUpper(D(), a, b));
@@ -65,8 +65,8 @@ HWY_INLINE std::array<double, 4> sums(V a, V b, V c, V d) {
 #endif
 }
 
-/// The vector that begins `num` entries before p. `before` and `here` are the vectors at p - lanes and p,
-/// which avoids reading two cache lines again.
+/// The vector that begins `num` entries before p. `before` and `here` are the vectors at p - lanes and p.
+/// With these vectors, two cache lines need not be read again.
 template <int num>
 HWY_INLINE V shifted_back([[maybe_unused]] const double* p, [[maybe_unused]] V before,
                           [[maybe_unused]] V here) {
@@ -94,13 +94,13 @@ HWY_INLINE V shifted_forward([[maybe_unused]] V here, V next) {
 #endif
 }
 
-/// sqrt(v) and 1/sqrt(v) to the last bit or two.
+/// sqrt(v) and 1/sqrt(v); the last bit or two may differ.
 struct Root {
   V root, inverse;
 };
 HWY_INLINE Root square_root(V v) {
 #if HWY_TARGET == HWY_AVX3
-  // A guess of 14 bits and the first terms of (1 - error)^(-1/2).
+  // The first guess has 14 bits. The first terms of (1 - error)^(-1/2) correct it.
   const V inverse{_mm512_rsqrt14_pd(v.raw)};
   const V root = hn::Mul(v, inverse);
   const V error = hn::NegMulAdd(root, inverse, all(1));
@@ -113,10 +113,10 @@ HWY_INLINE Root square_root(V v) {
 #endif
 }
 
-/// 1/v to the last bit or two. A division of eight numbers occupies its unit for 16 cycles.
+/// 1/v; the last bit or two may differ. A division of eight numbers would occupy its unit for 16 cycles.
 HWY_INLINE V reciprocal(V v) {
 #if HWY_TARGET == HWY_AVX3
-  // A guess of 14 bits and 1 / (1 - error) = (1 + error) (1 + error^2) (1 + error^4 ...
+  // The first guess has 14 bits. 1/(1 - error) = (1 + error) (1 + error^2) (1 + error^4) ... corrects it.
   const V guess{_mm512_rcp14_pd(v.raw)};
   const V error = hn::NegMulAdd(v, guess, all(1));
   const V better = hn::MulAdd(guess, error, guess);
@@ -136,7 +136,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #endif
 }
 
-/// Makes the bodies of for_vectors() inline: otherwise their sums would be in memory, which is slow.
+/// Makes the bodies of for_vectors() inline. Otherwise their sums would be in memory, which is slow.
 #undef CLOG_INLINE
 #if defined(__GNUC__)
 #define CLOG_INLINE __attribute__((always_inline))

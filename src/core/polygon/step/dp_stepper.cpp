@@ -21,7 +21,7 @@ kernel::KickTerms with_implicit_pressure(kernel::KickTerms terms) {
   return terms;
 }
 
-/// Surveys are frequent enough that vertices move little in between, which keeps the lists short.
+/// Surveys are frequent, so that vertices move little between them and the lists stay short.
 int steps_between_surveys(double time_step) {
   constexpr double longest = 0.04;  // [t0]
   int steps = most_steps_per_survey;
@@ -29,8 +29,8 @@ int steps_between_surveys(double time_step) {
   return steps;
 }
 
-/// Allows an implicit pressure if the drag on the relative motion of vertices damps the energy that the
-/// pressure feeds into a swinging droplet (docs/notes/2026-11-26-time-step.md).
+/// An implicit pressure feeds energy into a swinging droplet. It is allowed only if the drag on the relative
+/// motion of vertices damps this energy (docs/notes/2026-11-26-time-step.md).
 Pressure most_pressure(const RunParameters& run) {
   constexpr double most_steps = 32;
   const bool is_damped =
@@ -57,7 +57,7 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, D
       friction_{.touches = WallTouches(run, obstacles), .force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)} {
 }
 
-void DpStepper::start_afresh(const DropletState& state) {
+void DpStepper::rebuild_lists(const DropletState& state) {
   forces_->forget_all_contacts();
   forces_->update_contacts(state, state.possible_travel(steps_per_survey_ * run_.time_step.value()));
 }
@@ -84,9 +84,9 @@ std::int64_t DpStepper::move(DropletState& state, int num_steps, Droplet::Work* 
   return num_taken;
 }
 
-/// The number of parts of a step in which vertices may move as far as `way` against each other. Vertices that
-/// move farther than the range of self-contact in one step would pass through other parts of the interface
-/// before these push them.
+/// The number of parts into which a step is split if vertices may move as far as `way` against each other in
+/// this step. Otherwise a vertex that moves farther than the range of self-contact in one step would pass
+/// through other parts of the interface before they push it.
 int DpStepper::parts_of_fast_step(double way) const {
   constexpr double farthest = 0.25;  // in units of the range
   constexpr double most_parts = 16;
@@ -121,13 +121,13 @@ kernel::Survey DpStepper::survey() const {
                         memory_.arrays());
 }
 
-/// Renews the contact lists if they would become invalid within this time, and selects from them the possible
-/// contacts.
+/// Rebuilds the contact lists if they would become invalid within this time, and selects from them the
+/// possible contacts.
 void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now, double time,
                                  Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
-  const Travel travel{.absolute = possible_way(now.speed, time),
-                      .relative = possible_way(now.relative_speed, time)};
+  const Travel travel{.absolute = possible_distance(now.speed, time),
+                      .relative = possible_distance(now.relative_speed, time)};
   if (!forces_->contacts_hold(now.moved, now.moved_relative, travel)) {
     memory_.store(a.position, state.position);
     memory_.store(a.velocity, state.velocity);
@@ -135,16 +135,16 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   }
   rates_.fastest = now.speed;
   fastest_relative_ = now.relative_speed;
-  kernel_.clear_pushes(n_, a);  // the lists may name other groups than before
-  // A contact accelerates its vertices. For a few steps, they therefore move farther by up to half of the
-  // contact's depth per step, which `travel` does not include.
+  kernel_.clear_pushes(n_, a);  // the new lists may contain other groups than the old ones
+  // A contact accelerates its vertices. For a few steps, this adds up to half of the contact's depth to their
+  // motion in each step. `travel` does not include this distance.
   constexpr double thrown = 4;
   const double unforeseen =
       0.1 * forces_->vertex_diameter() +
       thrown * near_.contacts.measure(kernel_, contact_as_kick(run_, *forces_, 0), *forces_, a);
-  near_.wall_way = refined_sway * (travel.absolute + unforeseen);
-  near_.self_way = 2 * (travel.relative + unforeseen);
-  crossings_.renew(contour(), state.crossings);
+  near_.largest_wall_gap = refined_sway * (travel.absolute + unforeseen);
+  near_.largest_self_gap = 2 * (travel.relative + unforeseen);
+  crossings_.rebuild(contour(), state.crossings);
   keep_near_contacts();
   if (holds_circles_) {
     const double lost = forces_->friction().stiffness() * near_.hold.make(near_.contacts.walls(), state);
@@ -155,12 +155,12 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
 }
 
 void DpStepper::keep_near_contacts() {
-  near_.contacts.keep(kernel_, *forces_, near_.wall_way, near_.self_way);
+  near_.contacts.keep(kernel_, *forces_, near_.largest_wall_gap, near_.largest_self_gap);
   near_.contacts.mute(crossings_.muted(), n_);
 }
 
-/// Leaves the last half kick open: positions belong to the end of the steps, velocities to half a step
-/// earlier.
+/// The last half kick is still pending on return: positions are those at the end of the steps, and velocities
+/// those of half a step earlier.
 void DpStepper::advance(DropletState& state, const Steps& steps, Droplet::Work* work) {
   assert(forces_->has_contact_lists());
   assert(run_.drag.near_wall == 0 || steps.pressure == Pressure::present);
@@ -176,8 +176,8 @@ void DpStepper::finish(DropletState& state, Droplet::Work* work) {
   near_.hold.hand_back(state);
 }
 
-/// Evaluates the forces once, makes the half kick that ends a step and the one that begins the next step, and
-/// drifts to the next evaluation. Without a drift, makes only the first of these half kicks.
+/// Evaluates the forces once. Then makes the half kick that ends a step and the one that begins the next
+/// step, and drifts to the next evaluation. Without a drift, makes only the half kick that ends a step.
 void DpStepper::kick_and_drift(DropletState& state, double half_step, double drift_time,
                                Droplet::Work* work) {
   kernel::StepArrays& a = memory_.arrays();
@@ -237,9 +237,9 @@ Contour DpStepper::contour() const {
 
 /// Finds the vertices that passed through edges in the last drift. Returns whether muted contacts changed.
 bool DpStepper::follow_crossings(DropletState& state, double nearest_pair) {
-  // A pair whose vertex passed through the edge is at most as far apart now as the two moved. Since the last
-  // survey vertices may have become faster. Neighbours along the contour, which are not listed, pass through
-  // each other's edges in folds that close fast.
+  // When a vertex has just passed through an edge, its distance from the edge is at most the distance that
+  // the two moved. Since the last survey, vertices may have become faster. Neighbours along the contour are
+  // not listed; they pass through each other's edges in folds that close fast.
   constexpr double faster = 3, fast = 0.3;
   const double way = 2 * fastest_relative_ * open_.length;
   const bool may_have_passed = faster * way >= nearest_pair || way >= fast * forces_->self_contacts().range();
@@ -281,17 +281,17 @@ void DpStepper::push_off_everything(DropletState& state, const kernel::KickCoeff
                           memory_.arrays());
   if (forces_->wetted_walls().is_on()) add_wetting(state, impulse, work);
   if (slides) hold_by_friction(state, impulse, work);
-  if (terms_.varying_rate) renew_rates(coefficients);
+  if (terms_.varying_rate) update_rates(coefficients);
 }
 
 /// Computes the near-wall drag, unless it is still valid (see most_steps_per_rate).
-void DpStepper::renew_rates(const kernel::KickCoefficients& coefficients) {
+void DpStepper::update_rates(const kernel::KickCoefficients& coefficients) {
   if (rates_.steps_left > 0 && coefficients.h1 == rates_.h1 && coefficients.h2 == rates_.h2) {
     --rates_.steps_left;
     return;
   }
   const double way = rates_.fastest * 2 * coefficients.half_step;  // distance of the fastest vertex in a step
-  const double steps = 1 + farthest_way_per_rate * run_.drag.near_wall_cutoff / way;
+  const double steps = 1 + farthest_move_per_rate * run_.drag.near_wall_cutoff / way;
   rates_.steps_left = static_cast<int>(std::min(most_steps_per_rate, steps)) - 1;
   rates_.h1 = coefficients.h1;
   rates_.h2 = coefficients.h2;
@@ -326,8 +326,8 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// Lets the interface slip along walls where the walls' limits are exceeded; there the limiting force acts on
-/// the vertices.
+/// Where the forces of walls would exceed their limits, lets the interface slip along these walls. There the
+/// limiting force acts on the vertices.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
   const std::vector<WallTouch>& touches = friction_.touches.find({n_, a.position.x.first, a.position.y.first},

@@ -17,38 +17,39 @@
 
 namespace clog {
 
-/// Contacts, speeds and stability are surveyed at least once in this number of steps.
+/// A survey finds contacts, speeds and stability. There is at least one survey in this number of steps.
 inline constexpr int most_steps_per_survey = 32;
-/// The rates of the near-wall drag are kept for at most this number of steps, and no vertex may move farther
-/// in these steps than this fraction of the near-wall cutoff
+/// The rates of the near-wall drag are kept for at most this number of steps. In these steps, no vertex may
+/// move farther than this fraction of the near-wall cutoff
 /// (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
-inline constexpr double most_steps_per_rate = 4, farthest_way_per_rate = 0.2;
+inline constexpr double most_steps_per_rate = 4, farthest_move_per_rate = 0.2;
 
-/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the DropletState alone
-/// determines how the droplet moves on.
+/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the motion that follows
+/// depends only on the DropletState.
 class DpStepper {
  public:
   /// @param run  resolved parameters
   /// @param obstacles  must outlive this object
-  /// @param forces  of the same run, whose contact lists are renewed when needed; must outlive this object
+  /// @param forces  of the same run, whose contact lists are rebuilt when needed; must outlive this object
   DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces);
 
   /// Rebuilds the contact lists of a droplet.
-  void start_afresh(const DropletState& state);
-  /// Moves a droplet by `num_steps` time steps of the run, or by more and shorter steps if these would be
-  /// unstable; stops if the droplet bursts. Returns the number of steps taken.
+  void rebuild_lists(const DropletState& state);
+  /// Moves a droplet by `num_steps` time steps of the run. If these steps would be unstable, it takes more
+  /// and shorter steps. It stops if the droplet bursts. Returns the number of steps taken.
   /// @param work  if not null, the work of drag and springs is added to it
   std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
-  /// Moves a droplet by the given steps, which need neither have the run's length nor be stable. Possible
-  /// contacts are surveyed before each entry of `all`. With near-wall drag, the pressure must not be
-  /// implicit.
+  /// Moves a droplet by the given steps. They may have other lengths than the run's steps, and may be
+  /// unstable. Possible contacts are surveyed before each entry of `all`. With near-wall drag, the pressure
+  /// must not be implicit.
   void move(DropletState& state, std::span<const Steps> all, Droplet::Work* work);
 
  private:
   /// Possible contacts of the droplet before the next survey.
   struct Near {
     NearContacts contacts{};
-    double wall_way = 0, self_way = 0;         // distances from contact up to which `contacts` has entries
+    double largest_wall_gap = 0,
+           largest_self_gap = 0;               // distances from contact up to which `contacts` has entries
     WallPlan plan;                             // used if holds_circles_ is false
     WallHold hold;                             // used if holds_circles_ is true
     std::vector<kernel::WedgePlace> wedges{};  // wedges in the droplet's frame
@@ -64,7 +65,7 @@ class DpStepper {
     int steps_left = 0;  // number of steps for which the present rates may still be used
     double h1 = 0, h2 = 0;
   };
-  /// The step whose last half kick is pending.
+  /// The step with a pending last half kick.
   struct OpenStep {
     double length = 0;  // 0 if no half kick is pending
     Pressure pressure = Pressure::present;
@@ -102,7 +103,7 @@ class DpStepper {
   Contour contour() const;
   void push_off_everything(DropletState& state, const kernel::KickCoefficients& coefficients, double impulse,
                            Droplet::Work* work);
-  void renew_rates(const kernel::KickCoefficients& coefficients);
+  void update_rates(const kernel::KickCoefficients& coefficients);
   void add_wetting(DropletState& state, double impulse, Droplet::Work* work);
   void hold_by_friction(DropletState& state, double impulse, Droplet::Work* work);
   double vertex_mass() const;  // inertial mass of a vertex

@@ -17,14 +17,14 @@ double NearContacts::measure(const kernel::StepKernel& kernel, const kernel::Con
                    kernel.pair_gaps(self.data(), self.size(), contact, arrays, self_gaps_.data()));
 }
 
-void NearContacts::keep(const kernel::StepKernel& kernel, const DpForces& forces, double wall_way,
-                        double self_way) {
+void NearContacts::keep(const kernel::StepKernel& kernel, const DpForces& forces, double largest_wall_gap,
+                        double largest_self_gap) {
   walls_.clear();
   const auto& walls = forces.walls().items();
   assert(wall_gaps_.size() == walls.size() * std::size_t{kernel::edges_per_group});
   for (std::size_t k = 0; k < walls.size(); ++k) {
     const std::uint8_t edges =
-        kernel.edges_within(&wall_gaps_[k * std::size_t{kernel::edges_per_group}], wall_way);
+        kernel.edges_within(&wall_gaps_[k * std::size_t{kernel::edges_per_group}], largest_wall_gap);
     if (edges == 0) continue;
     walls_.push_back(walls[k]);
     walls_.back().edges = edges;
@@ -33,7 +33,7 @@ void NearContacts::keep(const kernel::StepKernel& kernel, const DpForces& forces
   const auto& self = forces.self_contacts().items();
   assert(self_gaps_.size() == self.size());
   for (std::size_t k = 0; k < self.size(); ++k)
-    if (self_gaps_[k] <= self_way) self_.push_back(self[k]);
+    if (self_gaps_[k] <= largest_self_gap) self_.push_back(self[k]);
 }
 
 void NearContacts::mute(std::span<const SelfCrossings::Muted> contacts, int num_vertices) {

@@ -16,7 +16,8 @@ class NearContacts {
   double measure(const kernel::StepKernel& kernel, const kernel::Contact& contact, const DpForces& forces,
                  const kernel::StepArrays& arrays);
   /// Keeps the entries that measure() found within these distances from contact [sigma].
-  void keep(const kernel::StepKernel& kernel, const DpForces& forces, double wall_way, double self_way);
+  void keep(const kernel::StepKernel& kernel, const DpForces& forces, double largest_wall_gap,
+            double largest_self_gap);
 
   /// Removes these contacts until the next keep(). @param num_vertices  number of the droplet's vertices
   void mute(std::span<const SelfCrossings::Muted> contacts, int num_vertices);

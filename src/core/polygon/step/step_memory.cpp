@@ -17,8 +17,8 @@ StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
   const auto pair = [&]() -> kernel::ContourPair { return {array(), array()}; };
   arrays_ = {pair(), pair(),  pair(),  array(), pair(), pair(), pair(),
              pair(), array(), array(), array(), pair(), pair()};
-  // If the last group is not full, the passes also divide by the lengths of its missing edges, which must not
-  // be 0.
+  // If the last group is not full, the passes also divide by the lengths of its missing edges. So these
+  // lengths must not be 0.
   std::fill_n(arrays_.length.first, stride - line, 1.0);
 }
 

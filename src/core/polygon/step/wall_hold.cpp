@@ -57,8 +57,8 @@ void WallHold::add_groups(kernel::HoldingCircle& circle) {
     const int last = window.first + static_cast<int>(std::bit_width(window.edges)) - 1;
     circle.wraps |= (window.first == 0 && (window.edges & 1) != 0) || last + 2 >= num_vertices_;
   }
-  // The arrays of the step repeat the contour beyond both of their ends. Forces on repeated vertices are
-  // added to the same vertices at the other end, so the groups at both ends are pushed, too.
+  // The arrays of the step repeat the contour beyond both ends. Forces on repeated vertices are added to the
+  // original vertices at the other end, so the groups at both ends are pushed, too.
   if (circle.wraps)
     is_pushed_.front() = is_pushed_[1] = is_pushed_[static_cast<std::size_t>(num_groups_)] =
         is_pushed_.back() = 1;
@@ -87,7 +87,7 @@ void WallHold::clear_pushes() {
             kernel::edges_per_group, 0.0);
 }
 
-/// The memory consists of arrays of the whole contour, all of equal length. The first three are for all
+/// The memory consists of arrays of equal length, each for the whole contour. The first three are for all
 /// circles together; the arrays of each circle follow.
 void WallHold::arrange_memory() {
   const std::size_t stride =

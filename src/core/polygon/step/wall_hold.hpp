@@ -11,23 +11,24 @@
 
 namespace clog {
 
-/// The friction anchors of a droplet (see WallFriction) and the circles that may push it, arranged by circle
-/// and by groups of vertices for the step. make() takes the anchors over from the droplet, and the lists are
-/// valid until the next make(); hand_back() copies the anchors into the droplet.
+/// The friction anchors of a droplet (see WallFriction) and the circles that may push it, arranged for the
+/// step by circle and by groups of vertices. make() moves the anchors from the droplet into this object. The
+/// lists are valid until the next make(). hand_back() copies the anchors into the droplet.
 class WallHold {
  public:
   /// @param range  distance from a circle's surface at which contact begins [sigma]
   WallHold(int num_vertices, double range);
 
-  /// Takes over the droplet's anchors. Returns half the sum of the squared slips of those anchors that none
-  /// of these circles can hold [sigma^2].
+  /// Takes the droplet's anchors. Returns half the sum of the squared slips of the anchors that none of these
+  /// circles can hold [sigma^2].
   /// @param near  possible contacts until the next make(), see list_windows()
   double make(const std::vector<WallContacts::Item>& near, DropletState& droplet);
-  /// Copies the anchors into the droplet, if make() was called since forget().
+  /// Copies the anchors into the droplet, if this object has any: forget() discards them, and make() takes
+  /// new ones.
   void hand_back(DropletState& droplet) const;
-  /// Discards the anchors: the next make() adopts those of its droplet.
+  /// Discards the anchors. The next make() takes those of its droplet.
   void forget() { has_anchors_ = false; }
-  /// Valid until the next make(). A step changes the anchors in it.
+  /// Valid until the next make(). A step changes the anchors in the result.
   const kernel::HoldingCircles& circles() const { return circles_; }
 
  private:
@@ -40,7 +41,7 @@ class WallHold {
     /// Zeroes the first `num_zeroed` numbers, or all if the memory must grow.
     void make_room(std::size_t needed, std::size_t num_zeroed);
   };
-  Memory memory_;   // pushes of circles: zero except where windows_ stored some
+  Memory memory_;   // pushes of circles; zero except where windows_ have stored a push
   Memory anchors_;  // one entry for each vertex of groups_, and each circle
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;

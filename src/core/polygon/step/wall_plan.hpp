@@ -10,8 +10,8 @@
 namespace clog {
 
 /// Repulsion of a contour by circles until the next make(). Each window (see list_windows()) stores the
-/// forces of its edges on their vertices; then these are added up once for each vertex. An edge that may
-/// touch two circles is in two windows: the second adds to the forces of the first.
+/// forces of its edges on their vertices. Then the forces on each vertex are added up once. An edge that may
+/// touch two circles is in two windows; the second window adds its forces to those of the first.
 class WallPlan {
  public:
   explicit WallPlan(int num_vertices);
@@ -25,7 +25,7 @@ class WallPlan {
   hwy::AlignedFreeUniquePtr<double[]> memory_;
   std::vector<kernel::WallWindow> listed_, all_, sharing_;
   std::vector<std::uint8_t> is_taken_;   // edges that a window contains
-  std::vector<std::uint8_t> is_pushed_;  // groups of vertices, the first is the one before the contour
+  std::vector<std::uint8_t> is_pushed_;  // groups of vertices; entry 0 is the group before the contour
   std::vector<int> groups_;
   kernel::WallWindows windows_{};
 

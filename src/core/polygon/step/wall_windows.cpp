@@ -26,7 +26,7 @@ void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
                              edge >= windows.back().first &&
                              edge - windows.back().first < kernel::edges_per_group;
       if (!is_inside)
-        // A window starts at the last group at the latest, because nothing can be read beyond this group.
+        // A window must not start behind the last group, because entries beyond its end cannot be read.
         windows.push_back({item.x, item.y, item.reach,
                            std::min(edge, (num_groups - 1) * kernel::edges_per_group), 0, item.layer});
       kernel::WallWindow& window = windows.back();

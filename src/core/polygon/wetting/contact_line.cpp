@@ -22,8 +22,8 @@ double cosine(double degrees) { return portable::cos(degrees * pi / 180); }
 
 /// The angle from one direction to another, by their cross and dot products.
 double turn_between(double cross, double dot) {
-  // For the small angles between adjacent vertices, the series of the arc tangent, with terms up to 0.3^29/29
-  // = 2e-17, takes a tenth of the time.
+  // For the small angles between adjacent vertices, the series of the arc tangent takes a tenth of the time.
+  // Its terms go up to 0.3^29/29 = 2e-17.
   constexpr double small = 0.3;
   constexpr int last_power = 27;
   if (!(std::abs(cross) < small * dot)) return portable::atan2(cross, dot);
@@ -33,7 +33,7 @@ double turn_between(double cross, double dot) {
   return t * series;
 }
 
-/// Distance along a wall from one place to another; around a circle the shorter one.
+/// Distance along a wall from one place to another. Around a circle it is the shorter of the two distances.
 double way(const WallPlace& wall, double from, double to) {
   const double turn = 2 * pi * wall.radius;
   const bool is_short = std::abs(to - from) < turn / 2;
@@ -43,8 +43,8 @@ double way(const WallPlace& wall, double from, double to) {
 /// @param k  from -size to 2 size - 1
 Index around(Index k, Index size) { return k < 0 ? k + size : k < size ? k : k - size; }
 
-/// Distance beyond the range of contact, in vertex diameters, up to which a vertex counts as on the wall, so
-/// that a held end is not lost when its vertex hovers or bounces.
+/// Distance beyond the range of contact, in vertex diameters, up to which a vertex counts as on the wall.
+/// With it, a held end is not lost when its vertex hovers or bounces.
 constexpr double hovering = 0.25;
 
 }  // namespace
@@ -157,7 +157,8 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
     return zone.wall.radius * turn_between(from.normal[0] * to.normal[1] - from.normal[1] * to.normal[0],
                                            (from.normal * to.normal).sum());
   };
-  // There is one end for each wetted vertex whose outward sum contains no other wetted vertex.
+  // There is one end for each wetted vertex for which the sum along the outward edges contains no other
+  // wetted vertex.
   for (Index k = 0; k < num; ++k) {
     if (vertex(k).share < 1) continue;
     for (const Index side : {Index{0}, Index{1}}) {
@@ -174,7 +175,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       double sum = zone.wall.wedge >= 0 ? here.on_wedge
                                         : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
-      Eigen::Array2d carried = here.forward;  // coefficient of the present vertex's u in `sum`, times forward
+      Eigen::Array2d carried = here.forward;  // `forward` times the coefficient of the vertex's u in `sum`
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
         const Index next = around(vertex(j).vertex + step, n);

@@ -1,4 +1,4 @@
-/// Tests the layers of an interface that lies on itself over a circle (docs/explanation/model.md).
+/// Tests the layers of an interface that rests on itself over a circle (docs/explanation/model.md).
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ using std::numbers::pi;
 constexpr double disc = 0.5, range = 0.01, film = 0.02;
 constexpr int on_arc = 41;
 
-/// A contour of half circles around the origin at these distances from the disc. Their directions alternate,
-/// and the end of the last one is joined to the first far outside.
+/// A contour of half circles around the origin at these distances from the disc. Their directions alternate.
+/// The end of the last half circle is joined to the first one far outside.
 DropletState stack(const std::vector<double>& heights) {
   std::vector<double> radii;
   radii.reserve(heights.size() + 1);

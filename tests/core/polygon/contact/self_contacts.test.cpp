@@ -74,9 +74,9 @@ Eigen::ArrayXd flattened(int n, double thickness, double shaking, unsigned seed)
 }
 
 TEST(SelfContacts, AreThoseOfAllVerticesAndEdgesWithEveryInstructionSet) {
-  // The numbers of vertices cover several cases: fewer than two groups, groups that are not full, contours
-  // whose pairs across are also pairs along the contour, and fine contours with many excluded vertices. On a
-  // stretched contour the length of the contour decides which vertices are excluded.
+  // The numbers of vertices cover several cases: fewer than two groups, groups that are not full, contours in
+  // which pairs across are also pairs along the contour, and fine contours with many excluded vertices. On a
+  // stretched contour, the length of the contour decides which vertices are excluded.
   for (const std::string& set : instruction_sets())
     for (const int n : {16, 17, 24, 25, 30, 31, 32, 33, 64, 101, 256, 700})
       for (const double stretch : {0.7, 1.0, 2.5}) {
@@ -116,8 +116,8 @@ int neighbours_of_first(double stretch) {
 }
 
 TEST(SelfContacts, LeavesOutThreeRangesOfTheContour) {
-  // Three ranges are 1.5 edges at rest. A compressed contour excludes the next vertex, but never the one
-  // after it. A stretched contour excludes none.
+  // Three ranges are 1.5 edges at rest. A compressed contour excludes the next vertex, but never the vertex
+  // after it. A stretched contour excludes no vertex.
   EXPECT_EQ(neighbours_of_first(1), 1);
   EXPECT_EQ(neighbours_of_first(0.2), 1);
   EXPECT_EQ(neighbours_of_first(1.4), 1);
@@ -130,8 +130,8 @@ TEST(SelfContacts, ItemsAreThePairs) {
     for (const int first : {0, n / 4 + 1}) {
       const double rest_edge = units::regular_edge_length(n);
       SelfContacts contacts(rest_edge, rest_edge);
-      // One half of the contour is compressed lengthwise, so that a strand also touches itself along its own
-      // direction.
+      // One half of the contour is compressed lengthwise. So there a strand touches itself with parts that
+      // have equal directions.
       Eigen::ArrayXd position = test::dumbbell(n, 0.03);
       position.tail(n) *= (position.head(n) > 0).select(Eigen::ArrayXd::Constant(n, 0.05), 1.0);
       const Eigen::ArrayXd narrow = (position.head(n) > 0).select(0.2 * position.head(n), position.head(n));

@@ -13,7 +13,7 @@
 namespace clog::test_of_self_crossings {
 namespace {
 
-/// A droplet with a neck whose two sides approach each other.
+/// A droplet with a neck. The two sides of the neck approach each other.
 struct Neck {
   RunParameters run;
   DropletState state;
@@ -35,7 +35,7 @@ struct Neck {
 const ObstacleArray nothing(20, std::vector<Obstacle>{});
 
 TEST(SelfCrossings, HealBeyondTheBarrierOfSelfContact) {
-  // Vertices of kinetic energy above the barrier k_c d_s^2/2 pass through the other side of the neck.
+  // Vertices with more kinetic energy than the barrier k_c d_s^2/2 pass through the other side of the neck.
   for (const int vertices : {128, 256}) {
     Neck slow(vertices, 0.05), fast(vertices, 3);
     DpDroplet calm(slow.run, nothing, slow.state), wild(fast.run, nothing, fast.state);
@@ -55,7 +55,7 @@ TEST(SelfCrossings, AreSavedAndRestored) {
     droplet.advance(1);
     ASSERT_LT(droplet.num_integrated_steps(), 400);
   }
-  droplet.start_afresh();
+  droplet.rebuild_lists();
   ByteWriter bytes;
   droplet.save(bytes);
   const std::vector<std::byte> saved = bytes.take();
@@ -71,8 +71,9 @@ TEST(SelfCrossings, AreSavedAndRestored) {
   EXPECT_TRUE((restored.state().velocity == droplet.state().velocity).all());
 }
 
-/// A contour in which vertex 0, the tip of a spike from above, can be led through a finger from the left, and
-/// round its tip at the origin. The finger is between edges 4 and 5, which meet at vertex 5.
+/// A contour with a spike from above and a finger. Vertex 0 is the tip of the spike. It can be led through
+/// the finger from the left, and round the finger's tip at the origin. The finger is between edges 4 and 5,
+/// which meet at vertex 5.
 class SpikeAtFinger {
  public:
   SpikeAtFinger() : forces_(run(), nothing), state_(test::state_of(shape())) {}
@@ -132,7 +133,7 @@ class SpikeAtFinger {
   }
 };
 
-/// Through both sides of the finger, and back round its tip.
+/// A path through both sides of the finger, and back round its tip.
 struct Place {
   double x, y;
 };
@@ -208,9 +209,9 @@ TEST(SelfCrossings, PushWithTheSlopeOfTheirEnergyWhereSeveralNeighboursPassed) {
     const auto n = static_cast<int>(state.size());
     const double* const places = state.position.data();
     const Contour contour{n, places, places + n};
-    contacts.renew(state, {});
+    contacts.rebuild(state, {});
     SelfCrossings crossings;
-    crossings.renew(contour, state.crossings);
+    crossings.rebuild(contour, state.crossings);
     crossings.find_pushes(contour, contacts);
     Eigen::ArrayXd force = Eigen::ArrayXd::Zero(state.position.size()), slope = force;
     for (const auto& [vertex, push] : crossings.pushes()) {
@@ -233,7 +234,7 @@ TEST(SelfCrossings, PushWithTheSlopeOfTheirEnergyWhereSeveralNeighboursPassed) {
 }
 
 TEST(SelfCrossings, PushWithRangePlusDepth) {
-  // far from other edges
+  // The spike is far from other edges.
   SpikeAtFinger spike;
   spike.lead_to(-0.6, -0.08, 1e-3);
   ASSERT_EQ(spike.state().crossings.size(), 1U);

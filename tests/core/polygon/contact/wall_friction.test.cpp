@@ -133,7 +133,7 @@ TEST(WallAnchors, OfFrictionBalanceTheEnergyToSecondOrder) {
   expect_balance(rough(0.3, 0), ObstacleArray(20, {{0.775, 0.2, 0.15}}), 0.5);
 }
 
-/// Two lobes side by side. The neck between them is so thin that it touches itself.
+/// Two lobes side by side. The neck between them is thin enough to touch itself.
 Eigen::ArrayXd lobes_side_by_side(double neck) {
   const Eigen::ArrayXd along = dumbbell(64, neck);
   Eigen::ArrayXd across(along.size());
@@ -171,7 +171,7 @@ TEST(WallAnchors, OfFrictionThroughAFilmBalanceTheEnergyToSecondOrder) {
 
 TEST(WallFriction, IsUsedUpWhereALightRopeBeginsToSlide) {
   // A rope over a disc slides at T_2 = exp(mu theta) T_1 (capstan formula). Its moment about the centre is
-  // then (T_2 - T_1) R, however much of it each point carries.
+  // then (T_2 - T_1) R, for any distribution of this moment over the points.
   constexpr double mu = 0.3, radius = 0.5, stiffness = 1e4;
   constexpr int num = 400;
   const WallFriction friction(mu, 0, stiffness, {});
@@ -184,7 +184,8 @@ TEST(WallFriction, IsUsedUpWhereALightRopeBeginsToSlide) {
       state.x()[i] = radius * std::cos(angle);
       state.y()[i] = radius * std::sin(angle);
       touches.push_back({i, disc, foot_on(disc, {}, {state.x()[i], state.y()[i]}), pressed, 0});
-      // Only the part of the rope next to its loaded end carries, each point as much as it can.
+      // Only the part of the rope next to its loaded end carries load. Each point there carries as much as it
+      // can.
       if (angle < (1 - share) * pi) continue;
       const double slip = mu * pressed / stiffness;
       state.anchors.push_back(
@@ -199,7 +200,7 @@ TEST(WallFriction, IsUsedUpWhereALightRopeBeginsToSlide) {
 }
 
 TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
-  // On an incline no end of a wetted arc is torn off its anchor. Such an event takes place within a single
+  // On an incline, no end of a wetted arc loses its anchor. The loss of an anchor takes place within a single
   // step, so its error would hide the second order.
   RunParameters run = bare_parameters();
   run.dp.perimeter_spring = PerimeterSpring::along;
@@ -214,8 +215,8 @@ TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
 }
 
 /// A rope over half of a disc, made of vertices that stiff springs join. The straight ends of the rope hang
-/// along +x. The disc pushes the vertices off, and holds them by friction. Forces pull at both ends until the
-/// rope rests or slides.
+/// along +x. The disc pushes the vertices away, and holds them by friction. Forces pull at both ends until
+/// the rope rests or slides.
 class Rope {
  public:
   static constexpr double radius = 0.5;
@@ -261,7 +262,7 @@ class Rope {
   KnownAnchors known_;
   DropletState state_;
 
-  /// Makes a step of length 1. The mass makes the step stable, and the drag hardly lets the rope swing.
+  /// Makes a step of length 1. The mass makes the step stable. The drag lets the rope swing hardly at all.
   void move(double first_pull, double second_pull, double weight) {
     constexpr double mass = 8 * spring_;
     const double kept = 1 - 2 * pi * 0.35 / n_;
@@ -332,7 +333,7 @@ TEST(RopeOverADisc, WithoutWeightSlidesAtExpMuTheta) {
 TEST(RopeOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
   // The tension follows dT/dphi = mu (T + w R sin phi) + w R cos phi over half a turn. The solution is L_2 =
   // exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). The ends of the rope are longer or shorter than
-  // these overhangs. Forces at the ends make up for the difference in weight.
+  // these overhangs. Forces at the ends replace the missing weight, or balance the additional weight.
   const double mu = 0.5, weight = 2;
   const double grip = std::exp(mu * pi);
   const double hanging = 0.3 * 0.5 * pi;
@@ -409,7 +410,7 @@ TEST(WallAnchors, AreSavedAndRestored) {
   const ObstacleArray wall(20, {{0.66, 0.1, 0.15}});
   DpDroplet droplet(run, wall, state_of(regular_polygon(64, units::rest_area)));
   droplet.advance(640);
-  droplet.start_afresh();
+  droplet.rebuild_lists();
   ASSERT_GT(droplet.potential_energy().anchors, 0);
   ByteWriter bytes;
   droplet.save(bytes);

@@ -24,8 +24,8 @@ RunParameters only(void (*switch_on)(RunParameters&), int vertices = 64) {
   return run;
 }
 
-/// The tests take the central difference of an energy of order one with the step h = 1e-6. The difference has
-/// a rounding error of about 1e-9, and a smaller truncation error, h^2 U'''.
+/// The tests take the central difference of an energy of order one with the step h = 1e-6. The rounding error
+/// of this difference is about 1e-9; the truncation error, h^2 U''', is smaller.
 constexpr double difference_tolerance = 2e-7;
 
 double free_force_error(const RunParameters& run, double weight = 0) {
@@ -149,7 +149,7 @@ TEST(DpForces, AMirroredDropletFeelsMirroredForces) {
   const ObstacleArray wall(20, {{0.2, 0.3, 0.15}});
   const ObstacleArray mirrored_wall(20, {{0.2, -0.3, 0.15}});
   const Eigen::ArrayXd position = shaken(dumbbell(n, 0.006), 1e-4);
-  // y is reversed, and so is the order of the vertices, to keep it counter-clockwise.
+  // y is reversed. The order of the vertices is reversed, too, so that it stays counter-clockwise.
   Eigen::ArrayXd mirrored(2 * n);
   mirrored.head(n) = position.head(n).reverse();
   mirrored.tail(n) = -position.tail(n).reverse();
@@ -300,7 +300,7 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
 
 TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
   // A wetted wall changes the tension along the interface. The springs along the interface do not balance
-  // this change. The edges of the polygon carry a part of it, and the liquid takes the rest. So no force acts
+  // this change: the edges of the polygon carry a part of it, and the liquid takes the rest. So no force acts
   // on the droplet as a whole along a flat wall.
   const ObstacleArray wall(20, {}, {{.tip = {0.37, 0}, .axis = {1, 0}, .half_angle = std::numbers::pi / 2}});
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
@@ -377,7 +377,7 @@ TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
 }
 
 TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {
-  // A box whose lower edge spans an obstacle that touches no vertex.
+  // A box with a lower edge that spans an obstacle. The obstacle touches no vertex.
   Eigen::ArrayXd position(32);
   for (int i = 0; i < 16; ++i) {
     const int side = i / 4;

@@ -35,8 +35,8 @@ class ReferenceForces : public DpForces {
       net_spreading += wetting_.net_spreading;
     }
     if (run_.dp.gravity == Gravity::area) {
-      // The forces of tension and pressure add up to zero. The springs along the interface push off the
-      // liquid instead of their neighbours. So the droplet as a whole feels no force from them.
+      // The forces of tension and pressure add up to zero. The springs along the interface act against the
+      // liquid instead of their neighbours. So they exert no force on the droplet as a whole.
       find_centroid_gradient();
       for (int i = 0; i < n_; ++i)
         add(force, i,
@@ -135,7 +135,8 @@ class ReferenceForces : public DpForces {
         push_half_edge(force, i, false, centre, item.reach);
       }
     });
-    // Edges need no test against wedges, because they meet the tip of a wedge first, and the tip is a circle.
+    // Edges are not tested against wedges, because they touch the tip of a wedge first, and the tip is a
+    // circle.
     for (const Wedge& wedge : wedges()) {
       const kernel::WedgePlace place = kernel::place_in(state.frame, wedge);
       for (int i = 0; i < n_; ++i) {
@@ -145,7 +146,7 @@ class ReferenceForces : public DpForces {
       }
     }
   }
-  /// The push k_c (reach - d) along `away`. The length of `away` is d.
+  /// The push k_c * (reach - d) along `away`. The length of `away` is d.
   Eigen::Array2d push(const Eigen::Array2d& away, double reach) const {
     const double d = away.matrix().norm() + 1e-300;  // avoids NaN for a point that is exactly at the centre
     return contact_stiffness() * std::max(0.0, reach - d) / d * away;

@@ -37,8 +37,8 @@ double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
 }
 
 TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
-  // The shapes are a circle, and two lobes with a waist. The vertices are evenly spread, because springs keep
-  // them so.
+  // The shapes are a circle, and two lobes with a waist. The vertices are evenly spread, as springs would
+  // keep them.
   for (const Eigen::ArrayXd& position : {regular_polygon(128, units::rest_area), dumbbell(128, 0.2)})
     for (const double line_tension : {0.05, 1.0, 10.0}) {
       RunParameters run = bare_parameters(128);
@@ -93,10 +93,10 @@ Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
 }
 
 TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
-  // On a round obstacle, a half edge digs deeper into the obstacle when it turns. This effect grows with the
-  // overlap, and makes the stiffest mode stiffer than the bound for a flat contact. The excess must be
-  // smaller than a certain margin: the bounds of all modes together stay by this margin below 4, the limit of
-  // stability. The overlap is the one that the automatic step allows.
+  // On a round obstacle, a half edge presses deeper into the obstacle when it turns. This effect grows with
+  // the overlap, and makes the stiffest mode stiffer than the bound for a flat contact. The excess must be
+  // smaller than the margin of the bounds: all modes together stay this margin below 4, the limit of
+  // stability. The overlap is the largest that the automatic step allows.
   const double radius = 0.15;
   for (const int n : {64, 128, 256, 512}) {
     RunParameters run = bare_parameters(n);

@@ -191,8 +191,8 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         EXPECT_GT(droplet.work().dissipated, 0.01);
         return worst;
       };
-      // The error also depends on the step in which a contact begins, and this disturbs a single halving of
-      // the step. So the error is compared over four halvings.
+      // The error also depends on the step in which a contact begins, and this disturbs the effect of a
+      // single halving of the step. So the error is compared over four halvings.
       const double coarse = imbalance(8e-4);
       const double fine = imbalance(5e-5);
       EXPECT_LT(fine, 4e-6);
@@ -345,8 +345,8 @@ TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
 }
 
 TEST(DpDroplet, IsSlowedByAWallAsTheDragLawSays) {
-  // Far above an obstacle, the mean of (sigma/d)^(4/3) over the vertices determines how much the droplet is
-  // slowed down.
+  // Far above an obstacle, the drag slows the droplet down by a factor that depends on the mean of
+  // (sigma/d)^(4/3) over the vertices.
   RunParameters run = bare_parameters();
   run.drag.near_wall = 0.5;
   run.dp.line_tension = 10;  // keeps the droplet round

@@ -92,9 +92,9 @@ class Step : public testing::TestWithParam<StepCase> {
 };
 
 TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
-  // A droplet with unevenly spread vertices and a neck that is so thin that it touches itself. One obstacle
-  // and one wedge are at the neck. The other obstacle is at one end of the droplet, and the other wedge at
-  // the other end.
+  // A droplet with unevenly spread vertices and a neck that is thin enough to touch itself. One obstacle and
+  // one wedge are at the neck. The other obstacle is at one end of the droplet, and the other wedge at the
+  // other end.
   for (const int vertices : {64, 101, 256}) {
     const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
@@ -148,7 +148,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
 }
 
 TEST(InstructionSets, HaveDifferentNames) {
-  // Otherwise use_instruction_set() cannot select each of them.
+  // Every name must be listed once. Otherwise use_instruction_set() cannot select each of them.
   const std::vector<std::string> names = instruction_sets();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }
@@ -158,7 +158,7 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
   for (const int vertices : {64, 101}) {
     const auto [run, initial, walls] = touching_droplet(vertices);
     constexpr double long_step = 1e-3, short_step = 0.3e-3;
-    // Each entry makes one step, because the rates of the near-wall drag are renewed between entries.
+    // Each entry makes one step, because the rates of the near-wall drag are updated between entries.
     std::vector<Steps> all;
     all.reserve(9);
     for (int k = 0; k < 9; ++k) all.push_back({1, k % 3 == 1 ? short_step : long_step});

@@ -70,7 +70,7 @@ class ReadableDroplet {
       find_rates();
       const double way = fastest_ * *run_.time_step;
       num_kept_ = static_cast<int>(
-          std::min(most_steps_per_rate - 1, farthest_way_per_rate * run_.drag.near_wall_cutoff / way));
+          std::min(most_steps_per_rate - 1, farthest_move_per_rate * run_.drag.near_wall_cutoff / way));
     }
     ++num_evaluations_;
   }

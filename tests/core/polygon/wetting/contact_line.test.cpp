@@ -193,7 +193,7 @@ TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
 }
 
 TEST(ContactLine, LetsADropGoWhoseWeightTurnsItMoreThanTheEndsBear) {
-  // The ends can bear the weight up to an offset of y = R Gamma h/(M g) = 0.15 from the disc's centre, with h
+  // The ends can hold the weight up to an offset of y = R Gamma h/(M g) = 0.15 from the disc's centre, with h
   // = cos receding - cos advancing.
   DropletRun lost = drop_on(sticky({1, 150, 180}, 64, 0.3), {{13.5, 9.9, 3}}, {}, 150);
   while (!lost.advance(100)) {

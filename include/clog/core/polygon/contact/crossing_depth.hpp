@@ -14,13 +14,13 @@ struct VertexPush {
   Eigen::Array2d force;  ///< divided by the stiffness of contact [sigma]
 };
 
-/// Where the interface crosses itself because a vertex passed through an edge.
+/// The place where the interface crosses itself because a vertex passed through an edge.
 struct CrossingPlace {
   int vertex, edge;
   /// Vertices where the edges end, forwards and backwards along the contour; -1: not nearby.
   std::array<int, 2> ends;
-  /// An edge that leads from the crossed vertex, or from the last of its crossed neighbours, to a vertex that
-  /// has not passed through.
+  /// An edge that begins at the crossed vertex, or at the last of its crossed neighbours, and ends at a
+  /// vertex that has not passed through.
   struct OwnEdge {
     int begin, end;
     bool crosses;  ///< whether it crosses the interface near the crossing's edge
@@ -28,11 +28,13 @@ struct CrossingPlace {
   std::array<OwnEdge, 2> own;
 };
 
-/// How far a crossed vertex is behind the interface, and where it would be without the crossing.
+/// Distance of a crossed vertex from the interface that it passed through, and its place without the
+/// crossing.
 ///
-/// The vertex comes out where it passed through, or where the edges end, if both of its own edges slip off
-/// this end. So the depth is the distance of the vertex from the edge, but at most the distance of each end
-/// from the farther one of the own edges that still cross.
+/// The vertex can return where it passed through. If both of its own edges slip off an end of the crossed
+/// edges, it can also return there. So the depth is the distance of the vertex from the crossed edge, but it
+/// is limited at each end: it is at most the distance of this end from the farther one of the own edges that
+/// still cross.
 class CrossingDepth {
  public:
   CrossingDepth(const Contour& contour, const CrossingPlace& place);
@@ -40,7 +42,7 @@ class CrossingDepth {
   int vertex() const { return vertex_; }
   double size() const { return is_limited() ? slip_.distance : distance_; }
   /// Moves the vertex towards the edge by the depth.
-  Eigen::Array2d shift() const { return is_limited() ? slip_.distance * to_edge() : way_to_edge_; }
+  Eigen::Array2d shift() const { return is_limited() ? slip_.distance * to_edge() : vector_to_edge_; }
 
   /// Adds `factor` times the gradient of size().
   void add_gradient(double factor, std::vector<VertexPush>& to) const;
@@ -57,15 +59,17 @@ class CrossingDepth {
   };
   int vertex_, begin_, end_;
   double length_, fraction_, distance_;
-  Eigen::Array2d tangent_, way_to_edge_;
+  Eigen::Array2d tangent_, vector_to_edge_;
   bool is_beside_;  // whether the nearest point of the edge is not one of its ends
   Slip slip_;
 
   bool is_limited() const { return slip_.distance < distance_; }
-  Eigen::Array2d to_edge() const { return distance_ > 0 ? way_to_edge_ / distance_ : Eigen::Array2d(0, 0); }
+  Eigen::Array2d to_edge() const {
+    return distance_ > 0 ? vector_to_edge_ / distance_ : Eigen::Array2d(0, 0);
+  }
   void limit_by(const Contour& contour, int end, const std::array<CrossingPlace::OwnEdge, 2>& own);
   void add_gradient_of_slip(double factor, std::vector<VertexPush>& to) const;
-  void add_gradient_of_way(const Eigen::Array2d& factor, std::vector<VertexPush>& to) const;
+  void add_gradient_of_vector_to_edge(const Eigen::Array2d& factor, std::vector<VertexPush>& to) const;
 };
 
 }  // namespace clog

@@ -19,8 +19,8 @@ struct VertexPair {
 /// Pairs of a vertex and an edge of the same droplet that may touch.
 ///
 /// Contact is between vertices and edges, so it also works if edges are longer than the vertex diameter.
-/// Every edge within reach pushes by itself, with its own nearest point. So energy and force are continuous
-/// wherever the vertex goes, even in a concave corner, where two edges are equally near.
+/// Every edge within reach pushes separately, from its own nearest point. So energy and force are continuous
+/// for every path of the vertex, even in a concave corner, where two edges are equally near.
 ///
 /// Edges close to a vertex along the contour do not count as contact, because otherwise every vertex would
 /// touch its neighbours. An edge is close if it is less than three ranges away along the present contour, and
@@ -38,18 +38,19 @@ class SelfContacts {
   /// @param rest_edge  length of an edge of the droplet at rest [sigma]
   SelfContacts(double range, double rest_edge) : range_(range) { set_rest_edge(rest_edge); }
 
-  /// Renews the length of an edge at rest, for a droplet that grows.
+  /// Sets the length of an edge at rest, for a droplet that grows.
   void set_rest_edge(double length);
 
-  /// Renews the pairs if the shape may change too much before the next update.
+  /// Rebuilds the pairs if the shape may change too much before the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
   /// Whether the pairs stay valid until the next update. Does not change them.
-  /// @param moved  bound on the displacement of any vertex since renew(), relative to the mean of all [sigma]
+  /// @param moved  bound on the displacement of any vertex since rebuild(), relative to the mean of all
+  /// [sigma]
   bool hold(double moved, const Travel& travel) const;
-  void renew(const DropletState& state, const Travel& travel);
-  /// Positions of the vertices at the last renew(), relative to their mean: all x, then all y, then unused
-  /// numbers that fill the last vector of the processor. Null if there are no pairs.
+  void rebuild(const DropletState& state, const Travel& travel);
+  /// Positions of the vertices at the last rebuild(), relative to their mean: all x, then all y, then padding
+  /// up to a whole number of SIMD vectors. Null if there are no pairs.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
   const std::vector<Pair>& pairs() const { return pairs_; }
   double range() const { return range_; }
@@ -58,15 +59,15 @@ class SelfContacts {
   /// Whether these vertices are too close along the contour to count as in contact.
   bool are_neighbours(int a, int b) const;
 
-  /// The same pairs, arranged for vector instructions: an item has a group of WallContacts::edges_per_group
-  /// edges and as many consecutive vertices. Opposite strands of the contour run in opposite directions, so
-  /// the last of these vertices is paired with the first edge. In a strand that is compressed until it
-  /// touches itself, the directions are equal, so the first vertex is paired with the first edge.
+  /// The pairs, arranged for vector instructions. An item has a group of WallContacts::edges_per_group edges
+  /// and as many consecutive vertices. Opposite strands of the contour run in opposite directions, so the
+  /// last of these vertices is paired with the first edge. In a strand that is compressed until it touches
+  /// itself, the directions are equal, so the first vertex is paired with the first edge.
   struct Item {
     int edges;           ///< first edge of a group
-    int vertices;        ///< first vertex; numbers from N on stand for the contour's first vertices
-    std::uint8_t pairs;  ///< bit b: edge `edges` + b and the b-th vertex
-    bool backwards;      ///< whether the b-th vertex is counted from the last
+    int vertices;        ///< first vertex; vertex N + i is vertex i
+    std::uint8_t pairs;  ///< bit b: whether edge `edges` + b and the b-th vertex are a pair
+    bool backwards;      ///< whether vertices are counted from the last
   };
   const std::vector<Item>& items() const { return items_; }
 
@@ -83,7 +84,7 @@ class SelfContacts {
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;
   std::vector<Pair> sorted_;       // memory of the sort
-  std::vector<int> end_of_group_;  // index of the end of the pairs of each group of edges
+  std::vector<int> end_of_group_;  // for each group of edges, the index behind its last pair
   std::vector<int> item_of_;       // the latest item, by direction and first vertex
 
   double skin_ = 0;  // skin with which the present pairs were made [sigma]
@@ -91,7 +92,7 @@ class SelfContacts {
   /// Fills along_. Returns the length of the longest edge.
   double measure_edges(const double* x, const double* y, int n);
   void find_close(const double* x, const double* y, double longest_edge, double reach);
-  void rebuild(const DropletState& state, double skin);
+  void rebuild_with_skin(const DropletState& state, double skin);
   void sort_pairs_by_groups(int n);
   void fill_items(const DropletState& state);
 };

@@ -12,29 +12,32 @@ namespace clog {
 /// Vertices that have passed through another part of their droplet's interface, and the force that pushes
 /// them back.
 ///
-/// The repulsion of self-contact depends on the distance between a vertex and an edge, on whichever side the
-/// vertex is. Both sides are possible: if the outside of the droplet is between the two, there is a film of
-/// water, and if the inside is, a thread of oil. So a vertex whose kinetic energy exceeds the barrier
-/// k_c d_s^2/2 would pass through the edge and then be pushed onward. To prevent this, a vertex whose path
-/// passes through the inside of an edge is recorded (SelfCrossing). Until its path leads back through the
-/// edge, or through a neighbour of this edge to which it has slid, it has the energy
+/// The repulsion of self-contact depends on the distance between a vertex and an edge, on whichever side of
+/// the edge the vertex is. Both sides are possible: a film of water may separate the vertex from the edge
+/// (they are neighbours across the outside), or a thread of oil (across the inside). So a vertex with more
+/// kinetic energy than the barrier k_c d_s^2/2 would pass through the edge and then be pushed onward. To
+/// prevent this, a vertex is recorded (SelfCrossing) when its path passes through the inside of an edge. The
+/// record ends when its path leads back through this edge, or through a neighbouring edge to which the vertex
+/// has slid. Until then the vertex has the energy
 ///   k_c [(d_s + D)^2 - d_s^2]/2.
 /// Its depth D is its distance from the edge, or less near an end of the edges (CrossingDepth). Other
-/// contacts between the vertex or its edges and these edges are muted, because unsigned distances do not know
-/// the side; instead they are computed as if the vertex were by D nearer to the edge, which mostly is on it.
-/// So the energy is continuous where a vertex passes through an edge, comes back, or slips off an end.
+/// contacts between the vertex or its edges and these edges are muted, because unsigned distances do not
+/// distinguish the sides. Instead, the muted contacts are computed as if the vertex were nearer to the edge
+/// by D, and so usually on the edge. The energy is therefore continuous where a vertex passes through an
+/// edge, comes back, or slips off an end.
 class SelfCrossings {
  public:
-  /// What moved the vertices to their present places: these velocities, for this time.
+  /// The last motion of the vertices: they moved to their present places with these velocities, for this
+  /// time.
   struct Drift {
     const double *velocity_x, *velocity_y;  ///< [sqrt(sigma g)]
     double time;                            ///< [t0]
   };
-  /// Records new crossings and ends those that have healed.
+  /// Records new crossings, and ends crossings when the vertex has returned.
   /// @return whether muted() has changed
   bool follow(const Contour& contour, const Drift& drift, const SelfContacts& contacts, DropletState& state);
-  /// Finds the muted contacts of these crossings, and forgets crossings that the contour does not have.
-  void renew(const Contour& contour, std::vector<SelfCrossing>& crossings);
+  /// Finds the muted contacts of these crossings, and removes crossings that the contour does not have.
+  void rebuild(const Contour& contour, std::vector<SelfCrossing>& crossings);
 
   /// A contact that find_pushes() includes, and the number of the crossing that mutes it.
   struct Muted {
@@ -44,7 +47,7 @@ class SelfCrossings {
   const std::vector<Muted>& muted() const { return muted_; }
   bool is_muted(const SelfContacts::Pair& pair) const;
 
-  /// Finds pushes() of the crossings of the last renew(), with their muted contacts.
+  /// Finds pushes() of the crossings of the last rebuild(), with their muted contacts.
   /// @return the energy of which they are the negative gradient, divided by the stiffness [sigma^2]
   double find_pushes(const Contour& contour, const SelfContacts& contacts);
   const std::vector<VertexPush>& pushes() const { return pushes_; }

@@ -12,7 +12,7 @@
 namespace clog {
 
 /// Thickness of the films between layers of the interface on a circle, see WallContacts; 0 if there are no
-/// layers [sigma]. It is larger than the range of self-contact, so that chords of one layer, which lie a
+/// layers [sigma]. It is larger than the range of self-contact. Therefore chords of one layer, which are a
 /// little lower than their arc, do not touch the next layer.
 inline double film_thickness(const DpParameters& dp) {
   constexpr double room_for_chords = 1.25;
@@ -21,20 +21,21 @@ inline double film_thickness(const DpParameters& dp) {
 }
 
 /// Lists of the obstacles near a polygon. `Keep` defines what is listed:
-/// - `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
+/// - `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle with a surface that was
+/// within
 ///   `range` + skin of the edge.
-/// - `touched_by_vertex`: vertex i lists every obstacle whose surface was within `range` + skin of the
+/// - `touched_by_vertex`: vertex i lists every obstacle with a surface that was within `range` + skin of the
 ///   vertex.
 /// - `nearest_to_vertex`: vertex i lists every obstacle that could become its nearest.
 ///
 /// The lists are valid while no vertex has moved by more than the skin.
 ///
-/// Where a droplet hangs over a circle, a second part of its interface may lie on the first, and further
-/// parts on these. Such a stack has layers. Layer k, which has k other parts of the interface between itself
-/// and the circle, touches the circle itself, enlarged by k times the thickness `film`. So the circle carries
-/// each layer by a force along its own smooth normal. If layers lay on each other instead, corners of their
-/// edges would interlock and transmit a tangential force, which a film of liquid does not bear. Only lists
-/// of edges have layers.
+/// Where a droplet hangs over a circle, a second part of its interface may rest on the first, and further
+/// parts on these. Such a stack has layers. Layer k has k other parts of the interface between itself and the
+/// circle. It touches the circle itself, enlarged by k times the thickness `film`. So the circle carries each
+/// layer by a force along the circle's smooth normal. If layers rested on each other instead, corners of
+/// their edges would interlock and transmit a tangential force, which a film of liquid cannot transmit. Only
+/// lists of edges have layers.
 class WallContacts {
  public:
   enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
@@ -43,17 +44,17 @@ class WallContacts {
   /// @param film  thickness of each film between layers; 0: all edges are in layer 0 [sigma]
   WallContacts(const ObstacleArray& array, double range, Keep keep, double film = 0);
 
-  /// Renews the lists if a vertex may move by more than the skin before the next update.
+  /// Rebuilds the lists if a vertex may move by more than the skin before the next update.
   void update(const DropletState& state, const Travel& travel);
-  /// Discards the lists. Call this when positions change without motion: by a new frame origin, or a rescaled
-  /// polygon.
+  /// Discards the lists. Call this when positions change without motion: when the frame's origin is shifted,
+  /// or the polygon is rescaled.
   void invalidate() { reference_.resize(0); }
   /// Whether the lists stay valid until the next update. Does not change them.
-  /// @param moved  bound on the displacement of any vertex since renew() [sigma]
+  /// @param moved  bound on the displacement of any vertex since rebuild() [sigma]
   bool hold(double moved, const Travel& travel) const;
-  void renew(const DropletState& state, const Travel& travel);
-  /// Positions of the vertices at the last renew(): all x, then all y, then unused numbers that fill the last
-  /// vector of the processor. Null if there are no lists.
+  void rebuild(const DropletState& state, const Travel& travel);
+  /// Positions of the vertices at the last rebuild(): all x, then all y, then padding up to a whole number of
+  /// SIMD vectors. Null if there are no lists.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
 
   double range() const { return range_; }
@@ -61,9 +62,9 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The same lists, in the form of items. An item is a circle and a group of `edges_per_group` edges
-  /// (vertices), at least one of which lists the circle. Items of edges are sorted by circle, then by layer,
-  /// then by group; items of vertices are sorted by group.
+  /// The lists in the form of items. An item is a circle and a group of `edges_per_group` edges (vertices),
+  /// at least one of which lists the circle. Items of edges are sorted by circle, then by layer, then by
+  /// group; items of vertices are sorted by group.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range + layer * film [sigma]
@@ -71,7 +72,7 @@ class WallContacts {
     std::uint8_t edges;      ///< edges (vertices) of the group that list the circle, as bits
     std::uint8_t layer = 0;  ///< number of other parts of the interface between the circle and these edges
   };
-  /// Edges in a higher layer count as edges of this layer.
+  /// Edges in a higher layer count as edges of layer `highest_layer`.
   static constexpr int highest_layer = 3;
   static constexpr int edges_per_group = 8;
   const std::vector<Item>& items() const { return items_; }
@@ -95,7 +96,7 @@ class WallContacts {
              other.least[1] <= most[1];
     }
   };
-  std::vector<Bounds> bounds_;  // bounds of each group of edges
+  std::vector<Bounds> bounds_;  // for each group of edges
   /// A group of edges near one circle, and the edges that the circle may touch, as bits, for each layer.
   struct NearbyGroup {
     int group;
@@ -111,7 +112,7 @@ class WallContacts {
   std::vector<Item> items_;
   double smallest_radius_ = 0, largest_radius_ = 0;
 
-  void rebuild(const DropletState& state, double skin);
+  void rebuild_with_skin(const DropletState& state, double skin);
   void gather_nearby(const DropletState& state);
   void list_by_edge(const Eigen::ArrayXd& position, const Eigen::ArrayXd& fine);
   void find_layers(const Obstacle& circle, const Eigen::ArrayXd& position, const Eigen::ArrayXd& fine);

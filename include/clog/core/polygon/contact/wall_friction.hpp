@@ -9,9 +9,10 @@
 
 namespace clog {
 
-/// k_t/k_c, stiffness of the springs between interface and wall divided by that of the contact; the value is
-/// usual for grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). With it a vertex slips by mu k_c/k_t
-/// times the depth of the contact before its spring reaches the limit: 7 % of a vertex diameter for mu = 1.
+/// k_t/k_c, the stiffness of the springs between interface and wall divided by that of the contact. The value
+/// is usual for grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). With this value, a vertex slips by
+/// mu k_c/k_t times the depth of the contact before its spring reaches the limit: 7 % of a vertex diameter
+/// for mu = 1.
 inline constexpr double friction_stiffness_ratio = 2.0 / 7;
 
 /// Dry friction of walls, and a yield traction. When a wall begins to push a vertex, a spring ties the vertex
@@ -34,17 +35,18 @@ class WallFriction {
   void add_forces(const DropletState& state, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
-  /// How near the droplet is to sliding around a circle: the moment of the springs' forces about the circle's
-  /// centre, divided by the largest moment that the walls' present pushes can bear; 1 where the interface
-  /// begins to slide. All layers on the circle count together. Returns the largest of these circles; NaN if
-  /// none touches the droplet. @param circles  in the droplet's coordinates
+  /// How near the droplet is to sliding around a circle. For one circle, this is the moment of the springs'
+  /// forces about the circle's centre, divided by the largest moment that friction can give with the present
+  /// normal forces. It is 1 where the interface begins to slide. All layers on the circle count together.
+  /// Returns the largest value of these circles; NaN if none touches the droplet. @param circles  in the
+  /// droplet's coordinates
   double use(const DropletState& state, std::span<const WallTouch> touches,
              std::span<const Obstacle> circles) const;
-  /// Moves anchors whose springs exceed the limit, adds anchors of new contacts, and removes those of ended
-  /// contacts.
+  /// Moves anchors if the forces of their springs exceed the limit, adds anchors for new contacts, and
+  /// removes anchors of ended contacts.
   /// @param state  the droplet whose anchors are updated
   /// @param touches  where walls push the droplet now
-  /// @param known  working memory; its content has no meaning before and after
+  /// @param known  working memory; its content is not kept between calls
   /// @param force  if not null, the forces of the springs are added to it: all x, then all y [g rho sigma^2]
   WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
                    KnownAnchors& known, Eigen::ArrayXd* force = nullptr) const;

@@ -12,7 +12,7 @@
 
 namespace clog {
 
-/// Finds the vertices that walls push, and which they hold by friction. The contacts are those of DpForces.
+/// Finds the vertices that walls push, and so can hold by friction. The contacts are those of DpForces.
 class WallTouches {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this

@@ -17,12 +17,12 @@ namespace clog {
 
 /// Terms of the interface's force.
 struct InterfaceTerms {
-  double line_tension;   ///< gamma
-  double spring;         ///< k_l N_v
-  double spring_length;  ///< l0 or the mean edge length
-  double spreading;      ///< k_l N_v of springs that act along the interface only
-  double pressure;       ///< -k_a (a - a0)
-  double vertex_weight;  ///< M g / N_v along +x
+  double line_tension;   ///< tension gamma, without the springs
+  double spring;         ///< stiffness k_l N_v of springs that carry tension
+  double spring_length;  ///< their rest length: l0, or the mean edge length
+  double spreading;      ///< stiffness k_l N_v of springs that act only along the interface
+  double pressure;       ///< pressure by the area's stiffness, -k_a (a - a0)
+  double vertex_weight;  ///< weight of a vertex along +x, M g / N_v
 };
 
 /// Potential energy of a deformable polygon among obstacles, and the data from which the passes of a step
@@ -35,11 +35,11 @@ class DpForces {
 
   /// @param travel  bound on the displacement until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
-  /// Whether update_contacts() would leave the lists unchanged. Returns false, too, if these bounds do not
-  /// suffice for an answer.
-  /// @param moved  bound on the displacement of any vertex since walls() were renewed [sigma]
+  /// Whether update_contacts() would leave the lists unchanged. Also returns false if these bounds are too
+  /// coarse to decide.
+  /// @param moved  bound on the displacement of any vertex since walls() were rebuilt [sigma]
   /// @param moved_relative  bound on the displacement of any vertex relative to the mean of all, since
-  /// self_contacts() were renewed [sigma]
+  /// self_contacts() were rebuilt [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
   /// Whether there are valid contact lists.
   bool has_contact_lists() const {
@@ -61,7 +61,7 @@ class DpForces {
 
   double vertex_diameter() const { return vertex_diameter_; }
 
-  /// The integrator needs the terms of the interface at this area and perimeter, and the contacts.
+  /// The terms of the interface at this area and perimeter, and the contacts; the integrator needs them.
   InterfaceTerms interface(double area, double perimeter) const;
   double contact_stiffness() const { return contact_stiffness_; }
   const WallContacts& walls() const { return walls_; }
@@ -69,15 +69,15 @@ class DpForces {
   const SelfContacts& self_contacts() const { return self_; }
   const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
   const WallFriction& friction() const { return friction_; }
-  /// Moves the anchors of friction or of the contact line whose springs exceed their limits, see
-  /// WallFriction::follow().
+  /// Moves the anchors of friction or of the contact line if the forces of their springs exceed their limits,
+  /// see WallFriction::follow().
   /// @param circles  circles that may touch the droplet
   WallYield let_walls_yield(DropletState& state, WallTouches& touches,
                             std::span<const WallContacts::Item> circles, Purpose purpose) const;
   bool has_anchors() const { return friction_.is_on() || wetted_walls_.hold_ends(); }
   const WettedWalls& wetted_walls() const { return wetted_walls_; }
 
-  /// The release uses these functions: there the droplet grows without weight.
+  /// These functions are for the release, where the droplet grows without weight.
   void set_rest_area(double area);
   void set_weight(double weight) { weight_ = weight; }
   double weight() const { return weight_; }

@@ -4,10 +4,10 @@
 
 namespace clog {
 
-/// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma].
-/// Velocity Verlet is stable for omega dt < 2; the bounds are those of a chain of masses M/N_v.
+/// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma]. They
+/// are the bounds of a chain of masses M/N_v. Velocity Verlet is stable for omega dt < 2.
 struct StiffModes {
-  /// One vertex in contact with a wall, through both its edges if walls push edges: 2 k_c N_v/M.
+  /// One vertex in contact with a wall (with both its edges if walls push edges): 2 k_c N_v/M.
   double contact = 0;
   /// Contact of two strands, in which each vertex is between two edges and each edge between two vertices: 8
   /// k_c N_v/M.
@@ -15,7 +15,7 @@ struct StiffModes {
   double area = 0;     ///< uniform pressure, K_a P^2/M
   double tension = 0;  ///< transverse zigzag, 4 Gamma N_v/(l M), l the shortest edge
   double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
-  /// A wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
+  /// Attraction or repulsion by a wall where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
   double wetting = 0;
   double pinning = 0;   ///< spring that holds the end of a wetted arc
   double friction = 0;  ///< springs by which walls hold a vertex along them, k_t N_v/M
@@ -35,7 +35,7 @@ inline constexpr double max_total_omega_dt2 = 3.0;
 /// Largest accepted (omega dt)^2 of all modes together for a droplet in contact with itself. This bound is
 /// larger, because self-contact is rare, and softer than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
-/// The area mode is anharmonic in the perimeter, so it has a bound of its own. With a bound of 1.25, three
+/// The area mode is anharmonic in the perimeter, so it has a separate bound. With a bound of 1.25, three
 /// times as many droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
 inline constexpr double max_area_omega_dt2 = 1.0;
 
@@ -67,9 +67,10 @@ struct Steps {
   double length;
   Pressure pressure = Pressure::present;
 };
-/// The fewest steps that cover `steps` time steps and keep every bound: at least `steps`, at most
-/// most_substeps times as many. The number is exact up to 2 `steps`. A larger number is rounded up to a
-/// multiple of `steps`: such shapes are far from the regular polygons for which the bounds hold.
+/// The smallest number of equal steps that cover `steps` time steps and keep every bound. It is at least
+/// `steps`, and at most most_substeps times as large. Up to 2 `steps` the number is exact. A larger number is
+/// rounded up to a multiple of `steps`, because such shapes are far from the regular polygons for which the
+/// bounds hold.
 /// @param most  Pressure::implicit: the pressure may be implicit if this saves steps
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 

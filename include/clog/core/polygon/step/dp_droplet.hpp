@@ -11,9 +11,9 @@ class DpStepper;
 /// Deformable polygon, integrated by velocity Verlet with drag (Cheng et al., "Simulation Methods"):
 ///   v += dt/2 (F - zeta v)/m,  x += dt v,  v = (v + dt/2 F/m)/(1 + dt zeta/(2m)).
 /// The drag of the second half kick is implicit, so that strong near-wall drag cannot destabilise the motion.
-/// The drag of relative motion is implicit, too: it uses the velocity of the centre of mass at the same
-/// instant. If the present perimeter makes the area mode too stiff for the time step, the pressure is
-/// implicit (see Pressure) where drag is strong and uniform; otherwise steps get shorter.
+/// The drag of relative motion is implicit, too: it uses the velocity of the centre of mass at the end of the
+/// step. If the present perimeter makes the area mode too stiff for the time step, the pressure is implicit
+/// (see Pressure) where drag is strong and uniform; otherwise steps get shorter.
 class DpDroplet final : public Droplet {
  public:
   /// @param run        resolved parameters
@@ -24,7 +24,7 @@ class DpDroplet final : public Droplet {
   ~DpDroplet() override;
 
   void advance(int num_steps) override;
-  void start_afresh() override;
+  void rebuild_lists() override;
   double kinetic_energy() const override;
   Eigen::Array2d centre() const override;
   Eigen::Array2d area_centre() const override { return area_centroid(state_.position); }

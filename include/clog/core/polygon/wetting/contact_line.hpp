@@ -28,12 +28,12 @@ inline WettedShare wetted_share(double distance, double contact_range, double wi
 }
 
 /// Stiffness k_p of the springs that hold the ends of wetted arcs, in units of Gamma per vertex diameter.
-/// With this value, an end slips by half a vertex diameter times the difference of the angles' cosines before
-/// its spring reaches the limit.
+/// With this value, an end slips before its spring reaches the limit: by half a vertex diameter times the
+/// difference of the angles' cosines.
 inline constexpr double pinning_stiffness = 2;
-/// Bound on the squared norm of the gradient of q (see ContactLine). The gradient comes from the wetted
-/// fractions of the last vertices, and from the change of these fractions with the vertices' distances from
-/// the wall.
+/// Bound on the squared norm of the gradient of q (see ContactLine). Two things contribute to this gradient:
+/// the wetted fractions of the last vertices, and the dependence of these fractions on the vertices'
+/// distances from the wall.
 inline constexpr double pinning_gradient2 = 1.5;
 
 /// The vertices of a droplet.
@@ -50,8 +50,8 @@ struct VertexPlaces {
 ///   q = u_m + sum share_e (u_e' - u_e).
 /// Here u is the coordinate of a vertex along the wall, and m a wetted vertex. The sum runs over the edges e
 /// from m outwards; share_e is an edge's wetted fraction, u_e and u_e' are the coordinates of its two ends.
-/// Where the interface is smooth, the gradient of q is normal to the interface, so q does not depend on where
-/// vertices are along it. A spring with the force f holds q:
+/// Where the interface is smooth, the gradient of q is normal to the interface. So q does not change when
+/// vertices slide along the interface. A spring with the force f holds q:
 ///   U = (k_p/2) (q - q*)^2,  -Gamma (cos Y - cos A) <= f <= Gamma (cos R - cos Y),
 /// with Young's angle Y, the advancing angle A and the receding angle R. Beyond these limits the spring pulls
 /// its anchor q* along, so that the force stays at the limit.
@@ -84,9 +84,9 @@ class ContactLine {
   void add_forces(std::span<const WallAnchor> anchors, const Ends& ends, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(std::span<const WallAnchor> anchors, const Ends& ends) const;
-  /// Moves anchors whose springs exceed their limits. An end keeps the nearest anchor of its wall and side. A
-  /// new end gets a new anchor, and anchors of vanished ends are removed. Afterwards there is one anchor for
-  /// each end, in the order of the ends.
+  /// Moves anchors if the forces of their springs exceed their limits. An end keeps the nearest anchor of its
+  /// wall and side. A new end gets a new anchor, and anchors of vanished ends are removed. Afterwards there
+  /// is one anchor for each end, in the order of the ends.
   WallYield follow(std::vector<WallAnchor>& anchors, const Ends& ends, Purpose purpose) const;
 
  private:

@@ -12,9 +12,10 @@
 
 namespace clog {
 
-/// Walls whose tension differs from that of the interface, and walls that hold the ends of wetted arcs. The
-/// tension is Gamma far from a wall, and that of the wetted wall where contact begins. In between, it changes
-/// by a smooth step, which keeps energy and force continuous and is wide enough for the edges to resolve.
+/// Walls with a tension that differs from that of the interface, and walls that hold the ends of wetted arcs.
+/// The tension is Gamma far from a wall, and that of the wetted wall where contact begins. In between, it
+/// changes by a smooth step, which keeps energy and force continuous. The step is so wide that the edges
+/// resolve it.
 class WettedWalls {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -62,10 +63,11 @@ class WettedWalls {
   /// Moves the anchors of a moving droplet as follow() does, and then finds the forces and the ends.
   WallYield follow_and_find_forces(const VertexPlaces& vertices, const LocalFrame& frame,
                                    std::vector<WallAnchor>& anchors, Forces& forces) const;
-  /// Moves anchors whose springs exceed their limits, see ContactLine::follow().
+  /// Moves anchors if the forces of their springs exceed their limits, see ContactLine::follow().
   WallYield follow(DropletState& state, Purpose purpose) const;
 
-  /// Energies of the difference of tensions, and of the springs that hold ends [g rho sigma^3].
+  /// Energy that comes from the difference of tensions, and energy of the springs that hold ends [g rho
+  /// sigma^3].
   double tension_energy(const DropletState& state) const;
   double spring_energy(const DropletState& state) const;
 

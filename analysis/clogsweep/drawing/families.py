@@ -1,0 +1,154 @@
+"""Draws families: droplets that break up, and the sizes of those that pass."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from .. import style
+from ..labels.groups import Groups
+from ..tools.errors import UserError
+from ..tools.hints import AnyPath, Group
+from .lengths import add_scale
+
+if TYPE_CHECKING:
+    import pandas
+
+MOST_UNKNOWN = 0.1  # Largest share of the area that may have an unknown fate at the outlet.
+END_COLOURS = {"clogged": style.COLOURS[1], "flowing": style.COLOURS[0], "passed": style.COLOURS[0],
+               "small": style.COLOURS[3], "failed": style.COLOURS[6], "broken": "0.6"}
+END_WORDS = {"clogged": "clogged", "flowing": "still moving", "passed": "passed the exit",
+             "small": "too small, not followed", "failed": "failed", "broken": "broke up"}
+
+
+def with_families(groups: Groups, source: AnyPath) -> list[Group]:
+    found = [group for group in groups.members if group.get("families")]
+    if not found:
+        raise UserError(f"no droplet of {source} has daughters; "
+                        "run the sweep with break-up=daughters and break-up-neck")
+    return found
+
+
+def line_at(group: Group, distance: float) -> dict[str, Any] | None:
+    """The group's line at this distance."""
+    return next((line for line in group["families"]["lines"] if math.isclose(line["distance"], distance)), None)
+
+
+def outlet_of(members: Sequence[Group], asked: float | None) -> float:
+    """Distance of the line at which the distribution of diameters is taken [sigma]: the one asked for, or the farthest
+    line at which most of the area is known (the first line if there is none). @throws UserError  if no droplet reached
+    a line, or none reached the one asked for"""
+    known = sorted({line["distance"] for group in members for line in group["families"]["lines"]})
+    if not known:
+        raise UserError("no droplet went 10 sigma; make max-time longer")
+    if asked is not None:
+        if any(math.isclose(asked, distance) for distance in known):
+            return asked
+        raise UserError(f"invalid --outlet={asked:g} (no droplet reached it, or it is no line of clogfit) "
+                        f"try one of {', '.join(f'{distance:g}' for distance in known)}")
+
+    def is_known(distance: float) -> bool:
+        lines = [line_at(group, distance) for group in members]
+        return all(line and line["not_known"] <= MOST_UNKNOWN for line in lines)
+
+    return max(filter(is_known, known), default=known[0])
+
+
+def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
+    """@param asked  the outlet, or None for the farthest line at which most of the area is known"""
+    members = with_families(groups, source)
+    outlet = outlet_of(members, asked)
+    figure = style.new_figure(figsize=(8.6, 7.2), layout="constrained")
+    grid = figure.add_gridspec(2, 2)
+    share, number, sizes = (figure.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, :]))
+    width = members[0]["families"]["diameter_class"]
+    for index, (group, colour) in enumerate(zip(members, style.shades(len(members)))):
+        label = groups.label_of(group)
+        lines = group["families"]["lines"]
+        places = [line["distance"] for line in lines]
+        passing = np.array([line["passing"] for line in lines])
+        ends = [[passing[i] if line[name] is None else line[name] for i, line in enumerate(lines)]
+                for name in ("passing_lower", "passing_upper")]
+        shifted = [place * style.side_by_side(index, len(members), places) for place in places]
+        marker = style.MARKERS[index % len(style.MARKERS)]
+        share.errorbar(shifted, passing, yerr=np.abs(np.array(ends) - passing), color=colour, marker=marker, capsize=2)
+        number.plot(places, [line["passed"]["number"] for line in lines], color=colour, marker=marker)
+        at_outlet = line_at(group, outlet)
+        if at_outlet:
+            numbers = at_outlet["passed"]["numbers"]
+            sizes.stairs(numbers, np.arange(len(numbers) + 1) * width, color=colour, linewidth=1.6, label=label)
+    known = sorted({line["distance"] for group in members for line in group["families"]["lines"]})
+    for axes in (share, number):
+        style.logarithmic_abscissa(axes, known)
+    share.set_ylim(0, 1.05)
+    number.set_ylim(bottom=0)
+    style.label(share, r"distance from the release $x/\sigma$", "share of the area that passes")
+    style.label(number, r"distance from the release $x/\sigma$", "droplets that pass, per droplet")
+    sizes.set_ylim(bottom=0)
+    style.label(sizes, r"diameter $d/\sigma$",
+                rf"droplets per droplet at ${outlet:g}\,\sigma$, in classes of {width:g}")
+    if any(groups.label_of(group) for group in members):
+        sizes.legend(frameon=False)
+    if length := groups.laboratory.get("length_mm"):
+        add_scale(sizes, "top", length, "diameter [mm]")
+    unknown = [line["not_known"] for group in members if (line := line_at(group, outlet))]
+    style.notes_of_panels(figure, [
+        "bars: intervals from resampled released droplets; a droplet passes when it, or one from which it descends, "
+        "first crosses the line",
+        f"at {outlet:g}σ the fate of at most {100 * max(unknown, default=0):.2g} % of the area is not known"])
+    return figure
+
+
+def order_of(paths: Sequence[str]) -> dict[str, float]:
+    """The height of each droplet in the tree: leaves one below the other, mothers between their daughters."""
+    leaves = [path for path in sorted(paths) if path + "0" not in paths]
+    heights = {path: float(-place) for place, path in enumerate(leaves)}
+    for path in sorted(paths, key=len, reverse=True):
+        if path not in heights:
+            heights[path] = (heights[path + "0"] + heights[path + "1"]) / 2
+    return heights
+
+
+def family_of(droplets: pandas.DataFrame, task: int, source: AnyPath) -> pandas.DataFrame:
+    """The droplets of one run. @throws UserError  if the run has no family"""
+    family = droplets[droplets.task == task]
+    if family.empty:
+        known = sorted(set(droplets.task))
+        remedy = (f"its tasks with one are {', '.join(map(str, known[:20]))}" if known
+                  else "run the sweep with break-up=daughters")
+        raise UserError(f"task {task} of {source} has no family that has ended; {remedy}")
+    return family
+
+
+def draw_family(droplets: pandas.DataFrame, task: int, source: AnyPath, groups: Groups) -> Figure:
+    """Draws the droplets of one family as bars from birth to end. @throws UserError  if the run has no family"""
+    family = family_of(droplets, task, source)
+    heights = order_of(list(family.path))
+    figure, axes = style.subplots(figsize=(7.6, 1.6 + 0.45 * (max(heights.values()) - min(heights.values()) + 1)))
+    for member in family.itertuples():
+        height = heights[member.path]
+        end = max(member.end_distance, member.birth_distance)
+        axes.add_patch(Rectangle((member.birth_distance, height - 0.4 * member.diameter), end - member.birth_distance,
+                                 0.8 * member.diameter, facecolor=END_COLOURS[member.status], edgecolor="none"))
+        axes.annotate(f"{member.diameter:.2f}", (end, height), xytext=(3, 0), textcoords="offset points", fontsize=7,
+                      va="center")
+        if member.status == "broken":
+            for part in "01":
+                axes.plot([end, end], [height, heights[member.path + part]], color="0.6", linewidth=0.8, zorder=0)
+    axes.set_xlim(min(0.0, family.birth_distance.min()), 1.06 * family.end_distance.max())
+    axes.set_ylim(min(heights.values()) - 1.3, max(heights.values()) + 0.7)  # The legend is below the bars.
+    axes.set_yticks([])
+    handles = [Rectangle((0, 0), 1, 1, facecolor=END_COLOURS[status]) for status in END_COLOURS
+               if status in set(family.status)]
+    axes.legend(handles, [END_WORDS[status] for status in END_COLOURS if status in set(family.status)], frameon=False,
+                fontsize=8, loc="lower right", ncols=len(handles))
+    axes.set_xlabel(r"displacement along gravity $r/\sigma$")
+    if length := groups.laboratory.get("length_mm"):
+        add_scale(axes, "top", length, "displacement [mm]")
+    style.notes(axes, [f"task {task}: each bar is a droplet, as thick as its diameter, which is beside it"])
+    return figure

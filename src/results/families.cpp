@@ -1,0 +1,210 @@
+#include "clog/results/families.hpp"
+
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <string>
+
+namespace clog::results {
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+double area_of(const Member& member) { return member.diameter * member.diameter; }
+
+/// A droplet that did not break up: its end, and the largest distance that it or one of its ancestors
+/// reached.
+struct Leaf {
+  const Member* member;
+  double reach;  ///< [sigma]
+
+  /// Whether the droplet certainly goes no farther.
+  bool has_stopped() const {
+    return member->status == MemberEnd::clogged || member->status == MemberEnd::small;
+  }
+};
+
+/// One family as a tree.
+class Tree {
+ public:
+  explicit Tree(const std::vector<Member>& members) {
+    for (const Member& member : members) members_.emplace(member.path, &member);
+  }
+
+  /// Calls visit(member, true) for each droplet that is the first of its line of descent to pass the line.
+  /// Calls visit(member, false) for each droplet that ends before the line.
+  template <class Visit>
+  void at_line(double distance, const Visit& visit, const std::string& path = "") const {
+    const auto found = members_.find(path);
+    if (found == members_.end()) return;
+    const Member& member = *found->second;
+    const bool passes = std::max(member.birth.distance, member.end.distance) >= distance;
+    if (passes || member.status != MemberEnd::broken) {
+      visit(member, passes);
+      return;
+    }
+    for (const char part : {'0', '1'}) at_line(distance, visit, path + part);
+  }
+
+  std::vector<Leaf> leaves() const {
+    std::vector<Leaf> all;
+    add_leaves("", 0, all);
+    return all;
+  }
+
+ private:
+  std::map<std::string, const Member*> members_;
+
+  void add_leaves(const std::string& path, double reach, std::vector<Leaf>& all) const {
+    const auto found = members_.find(path);
+    if (found == members_.end()) return;
+    const Member& member = *found->second;
+    reach = std::max({reach, member.birth.distance, member.end.distance});
+    if (member.status != MemberEnd::broken) all.push_back({&member, reach});
+    for (const char part : {'0', '1'}) add_leaves(path + part, reach, all);
+  }
+};
+
+void add(const Member& member, Diameters& all) {
+  const auto number =
+      std::min(static_cast<std::size_t>(member.diameter / diameter_class), num_diameter_classes - 1);
+  all.number += 1;
+  all.area += area_of(member);
+  all.mean += member.diameter;
+  all.numbers[number] += 1;
+  all.areas[number] += area_of(member);
+}
+
+/// Divides sums over all ancestors by their number.
+void make_means(Diameters& all, double num_ancestors) {
+  all.mean = all.number > 0 ? all.mean / all.number : no_number;
+  for (double* sum : {&all.number, &all.area}) *sum /= num_ancestors;
+  for (auto* sums : {&all.numbers, &all.areas})
+    for (double& sum : *sums) sum /= num_ancestors;
+}
+
+std::vector<double> lines_up_to(double farthest) {
+  std::vector<double> lines;
+  for (double decade = 10; decade <= farthest; decade *= 10)
+    for (const double factor : {1, 2, 5})
+      if (factor * decade <= farthest) lines.push_back(factor * decade);
+  return lines;
+}
+
+/// Product-limit estimates at the lines.
+/// @param leaves  of all families
+/// @param times  number of times that each family counts
+class ProductLimit {
+ public:
+  ProductLimit(const std::vector<std::vector<Leaf>>& leaves) {
+    for (std::size_t family = 0; family < leaves.size(); ++family)
+      for (const Leaf& leaf : leaves[family])
+        steps_.push_back({leaf.reach, area_of(*leaf.member), leaf.has_stopped(), family});
+    std::ranges::sort(steps_, {}, &Step::reach);
+  }
+
+  std::vector<double> at(const std::vector<double>& lines, const std::vector<int>& times) const {
+    double at_risk = 0;
+    for (const Step& step : steps_) at_risk += times[step.family] * step.area;
+    std::vector<double> passing;
+    double share = 1;
+    auto step = steps_.begin();
+    for (const double line : lines) {
+      for (; step != steps_.end() && step->reach < line; ++step) {
+        const double area = times[step->family] * step->area;
+        if (step->is_end && at_risk > 0) share *= std::max(0.0, 1 - area / at_risk);
+        at_risk -= area;
+      }
+      passing.push_back(share);
+    }
+    return passing;
+  }
+
+ private:
+  struct Step {
+    double reach, area;
+    bool is_end;
+    std::size_t family;
+  };
+  std::vector<Step> steps_;
+};
+
+/// Percentiles of resampled ancestors. NaN for a single ancestor, and if all resamples give one value.
+void set_intervals(const ProductLimit& estimator, std::size_t num_families, double confidence,
+                   const std::vector<double>& distances, std::vector<FamilyLine>& lines) {
+  constexpr int num_resamples = 2000;
+  std::seed_seq sequence{std::uint32_t{0x66616d69}};  // fixed, so that the output is reproducible
+  boost::random::mt19937_64 engine(sequence);
+  boost::random::uniform_int_distribution<std::size_t> draw(0, num_families - 1);
+  std::vector<std::vector<double>> drawn(lines.size());
+  for (int i = 0; i < num_resamples; ++i) {
+    std::vector<int> times(num_families);
+    for (std::size_t j = 0; j < num_families; ++j) ++times[draw(engine)];
+    const std::vector<double> passing = estimator.at(distances, times);
+    for (std::size_t line = 0; line < lines.size(); ++line) drawn[line].push_back(passing[line]);
+  }
+  const double last = num_resamples - 1, tail = (1 - confidence) / 2 * last;
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    std::vector<double>& values = drawn[line];
+    std::ranges::sort(values);
+    const bool is_known = tail >= 1 && values.front() < values.back();
+    lines[line].interval = {is_known ? values[static_cast<std::size_t>(tail)] : no_number,
+                            is_known ? values[static_cast<std::size_t>(std::ceil(last - tail))] : no_number};
+  }
+}
+
+FamilyLine line_at(double distance, const std::vector<Tree>& trees) {
+  FamilyLine line{.distance = distance, .passed = {}};
+  for (const Tree& tree : trees)
+    tree.at_line(distance, [&](const Member& member, bool passes) {
+      if (passes)
+        add(member, line.passed);
+      else if (member.status == MemberEnd::clogged)
+        line.clogged += area_of(member);
+      else if (member.status == MemberEnd::small)
+        line.small += area_of(member);
+      else
+        line.not_known += area_of(member);
+    });
+  const auto num_ancestors = static_cast<double>(trees.size());
+  make_means(line.passed, num_ancestors);
+  for (double* area : {&line.clogged, &line.small, &line.not_known}) *area /= num_ancestors;
+  return line;
+}
+
+}  // namespace
+
+Families families_of(std::span<const std::vector<Member>> families, double confidence) {
+  fit::require_confidence(confidence);
+  Families found;
+  if (families.empty()) return found;
+  std::vector<Tree> trees;
+  std::vector<std::vector<Leaf>> leaves;
+  double farthest = 0, num_daughters = 0;
+  for (const std::vector<Member>& family : families) {
+    trees.emplace_back(family);
+    leaves.push_back(trees.back().leaves());
+    num_daughters += static_cast<double>(family.size() - 1);
+    for (const Leaf& leaf : leaves.back()) {
+      farthest = std::max(farthest, leaf.reach);
+      if (leaf.member->status == MemberEnd::clogged) add(*leaf.member, found.clogged);
+    }
+  }
+  const auto num_ancestors = static_cast<double>(families.size());
+  found.num_ancestors = static_cast<int>(families.size());
+  found.num_daughters = num_daughters / num_ancestors;
+  make_means(found.clogged, num_ancestors);
+  const std::vector<double> distances = lines_up_to(farthest);
+  for (const double distance : distances) found.lines.push_back(line_at(distance, trees));
+  const ProductLimit estimator(leaves);
+  const std::vector<double> passing = estimator.at(distances, std::vector<int>(families.size(), 1));
+  for (std::size_t i = 0; i < passing.size(); ++i) found.lines[i].passing = passing[i];
+  set_intervals(estimator, families.size(), confidence, distances, found.lines);
+  return found;
+}
+
+}  // namespace clog::results

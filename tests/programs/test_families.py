@@ -1,0 +1,223 @@
+"""Tests droplets that break up and continue as daughters, from the sweep to its pictures."""
+
+import json
+import os
+import signal
+import unittest
+
+import h5py
+import numpy as np
+import pandas
+import stored_rows
+from drawing import Analysis
+from support import BIN, FAMILIES, SNAPSHOT_OF_A_DAUGHTER, TIMING, SweepTest, shared_sweep, table
+
+import clogsweep
+
+# Families with runs that take seconds. They have snapshots of ancestors and of daughters.
+LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
+
+
+def droplets(path):
+    return pandas.read_hdf(path, "droplets")
+
+
+class Families(SweepTest, Analysis):
+    def setUp(self):
+        super().setUp()
+        self.copy_sweep("s.h5", *FAMILIES)
+        self.droplets = droplets(self.folder / "s.h5")
+
+    def check_equal(self, name, other):
+        super().check_equal(name, other)
+        pandas.testing.assert_frame_equal(droplets(self.folder / name), droplets(self.folder / other), check_exact=True)
+
+    def deepest(self):
+        """The line of a daughter of a daughter that was followed."""
+        followed = self.droplets[self.droplets.status != "small"]
+        return max(followed.itertuples(), key=lambda member: len(member.path))
+
+    def test_the_area_of_each_family_is_that_of_its_ancestor(self):
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(sorted(set(self.droplets.task)), rows.task.tolist())
+        ancestors = self.droplets[self.droplets.path == ""]
+        self.assertEqual(ancestors.status.tolist(), rows.status.tolist())
+        self.assertEqual(ancestors.end_distance.tolist(), rows.distance.tolist())
+        self.assertEqual(ancestors.end_time.tolist(), rows.time.tolist())
+        for _, family in self.droplets.groupby("task"):
+            leaves = family[family.status != "broken"]
+            self.assertAlmostEqual((leaves.diameter**2).sum(), 1, delta=1e-13)
+        self.assertGreater(len(self.droplets), 2 * len(rows))
+
+    def test_a_droplet_breaks_into_halves_on_a_post_ahead(self):
+        self.write("post.csv", "x,y,diameter\n13,10,0.3\n")
+        self.succeed("clogsweep", "obstacles=post.csv", "box=20", "seeds=1", "vertices=128", "line-tension=0.1",
+                     "break-up=daughters", "break-up-neck=0.02", "max-time=200", "--output", "post.h5")
+        first, *halves = droplets(self.folder / "post.h5").itertuples()
+        self.assertEqual((first.status, [half.path for half in halves[:2]]), ("broken", ["0", "1"]))
+        areas = [half.diameter**2 for half in halves[:2]]
+        self.assertAlmostEqual(areas[0], areas[1], delta=1e-3)
+        self.assertAlmostEqual(halves[0].birth_lateral, -halves[1].birth_lateral, delta=0.02)
+
+    def test_rows_of_ancestors_are_those_of_runs_that_end_at_break_up(self):
+        alone = [word for word in FAMILIES if not word.startswith("break-up=")]
+        self.copy_sweep("alone.h5", *alone)
+        family, single = (table(self.folder / name).drop(columns=[*TIMING, "break_up"]) for name in ("s.h5", "alone.h5"))
+        pandas.testing.assert_frame_equal(family, single, check_exact=True)
+        with h5py.File(self.folder / "alone.h5") as file:
+            self.assertNotIn("droplets", file)
+            self.assertEqual(file.attrs["format_version"], b"11")
+
+    def test_programs_of_another_format_refuse_the_file_with_one_line(self):
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertEqual(file.attrs["format_version"], b"12")
+        stored_rows.change_attribute(self.folder / "s.h5", "format_version", "13")
+        self.refuse("clogsweep", "status", "s.h5", words=["format version 13", "9 to 12"])
+
+    def test_a_replay_repeats_families_and_single_daughters(self):
+        self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", 0).stdout)
+        member = self.deepest()
+        self.assertGreater(len(member.path), 1)
+        printed = self.succeed("clogsweep", "replay", "s.h5", member.task, "--droplet", member.path).stdout
+        self.assertIn("the same bits", printed)
+        paths = ", ".join(path for path in self.droplets[self.droplets.task == 0].path if path)
+        for program, more in (("clogsweep", []), ("clogrun", ["--output", "r.h5"])):
+            self.refuse(program, "replay", "s.h5", 0, "--droplet", "0000000", *more, words=[f"task 0 are {paths})"])
+
+    def test_a_replay_repeats_daughters_with_the_springs_of_a_preset(self):
+        """A row states the stiffness of the ancestor's springs, but not its ratio to the line tension."""
+        self.succeed("clogsweep", *FAMILIES, "preset=elastic", "--quiet", "--output", "e.h5")
+        self.assertGreater(len(droplets(self.folder / "e.h5")), 1)
+        self.assertIn("the same bits", self.succeed("clogsweep", "replay", "e.h5", 0).stdout)
+
+    def test_a_replay_finds_a_changed_daughter(self):
+        def change(file):
+            lines = file["droplets"][:]
+            lines["end_distance"][lines["path"] == b"0"] += 1e-9
+            file["droplets"][:] = lines
+            file["droplets"].attrs["checksum"] = np.bytes_(str(stored_rows.zlib.crc32(lines.tobytes())))
+
+        stored_rows.edited(self.folder / "s.h5", change)
+        for more in ([], ["--droplet", "0"]):
+            done = self.run_program("clogsweep", "replay", "s.h5", 0, *more)
+            self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+            self.assertIn("differs", done.stdout)
+
+    def test_clogrun_records_a_daughter_in_its_own_units(self):
+        member = self.deepest()
+        self.succeed("clogrun", "replay", "s.h5", member.task, "--droplet", member.path, "--output", "r.h5",
+                     "--polygon-interval", 5)
+        run = clogsweep.open(self.folder / "r.h5", BIN)
+        scale = member.diameter
+        self.assertEqual(float(run.attributes["droplet_diameter"]), scale)
+        self.assertEqual(run.attributes["droplet"], member.path)
+        self.assertEqual(run.row["status"], member.status)
+        self.assertAlmostEqual(member.birth_distance + scale * run.row["distance"], member.end_distance, delta=1e-12)
+        self.assertAlmostEqual(member.birth_time + scale**0.5 * run.row["time"], member.end_time, delta=1e-9)
+        self.assertAlmostEqual(run.samples.area[0], np.pi / 4, delta=0.01)
+
+    def test_damage_of_the_droplets_is_found(self):
+        content = bytearray((self.folder / "s.h5").read_bytes())
+        with h5py.File(self.folder / "s.h5") as file:
+            place = file["droplets"].id.get_chunk_info(0).byte_offset
+        content[place + 80] ^= 4
+        (self.folder / "s.h5").write_bytes(content)
+        self.assertEqual(self.run_program("clogsweep", "verify", "s.h5").returncode, 1)
+        self.assertEqual(self.run_program("clogfit", "s.h5").returncode, 2)
+        self.succeed("clogsweep", "salvage", "s.h5", "--output", "kept.h5")
+        self.succeed("clogsweep", *FAMILIES, "--output", "kept.h5")
+        self.copy_sweep("whole.h5", *FAMILIES)
+        self.check_equal("kept.h5", "whole.h5")
+
+    def test_families_do_not_depend_on_the_number_of_ranks(self):
+        for ranks in (2, 3):
+            self.succeed("clogsweep", *FAMILIES, "--output", f"{ranks}.h5", ranks=ranks)
+            self.check_equal(f"{ranks}.h5", "s.h5")
+
+    def test_select_and_merge_keep_families(self):
+        self.succeed("clogsweep", "select", "s.h5", "seed<=2", "--output", "one.h5")
+        self.succeed("clogsweep", "select", "s.h5", "seed>=2", "--output", "other.h5")
+        self.succeed("clogsweep", "merge", "one.h5", "other.h5", "--output", "all.h5")
+        self.check_equal("all.h5", "s.h5")
+
+    def test_families_merge_with_runs_that_end_at_break_up(self):
+        self.copy_sweep("end.h5", *(word for word in FAMILIES if not word.startswith("break-up=")))
+        self.succeed("clogsweep", "merge", "s.h5", "end.h5", "--output", "both.h5")
+        self.succeed("clogsweep", "verify", "both.h5")
+        rows = table(self.folder / "both.h5").set_index("task")
+        self.assertEqual(len(rows), 8)
+        merged = droplets(self.folder / "both.h5")
+        self.assertEqual(set(rows.break_up[merged.task]), {"daughters"})
+        for name, form in (("end", b"11"), ("daughters", b"12")):
+            self.succeed("clogsweep", "select", "both.h5", f"break_up={name}", "--output", f"{name}-again.h5")
+            with h5py.File(self.folder / f"{name}-again.h5") as file:
+                self.assertEqual([file.attrs["format_version"], "droplets" in file], [form, form == b"12"])
+        self.check_equal("daughters-again.h5", "s.h5")
+
+    def test_families_are_added_to_a_finished_sweep(self):
+        few = [*FAMILIES[:-1], "seeds=1..3", "--output", "few.h5"]
+        self.succeed("clogsweep", *few)
+        self.succeed("clogsweep", *few, "--seeds-per-set", 4)
+        pandas.testing.assert_frame_equal(droplets(self.folder / "few.h5"), self.droplets, check_exact=True)
+
+    def test_killed_families_resume_bit_for_bit(self):
+        sweep = [*LONG, "--report-seconds=0.1", "--output", "k.h5"]
+
+        journal = self.folder / "k.h5.journal"
+
+        def kill():
+            process = self.start(*sweep)
+            self.wait_for(lambda: process.poll() is not None or
+                          journal.exists() and SNAPSHOT_OF_A_DAUGHTER in journal.read_bytes())
+            for rank in self.ranks_of(process):
+                os.kill(rank, signal.SIGKILL)
+            process.communicate()
+            return journal.exists() or (self.folder / "k.h5").unlink()
+
+        self.until_in_time(kill)
+        self.succeed("clogsweep", *sweep, ranks=2)
+        (self.folder / "whole.h5").write_bytes(shared_sweep(*LONG).read_bytes())
+        rows, others = (table(self.folder / name).drop(columns=[*TIMING, "attempt"]) for name in ("k.h5", "whole.h5"))
+        pandas.testing.assert_frame_equal(rows, others, check_exact=True)
+        pandas.testing.assert_frame_equal(droplets(self.folder / "k.h5"), droplets(self.folder / "whole.h5"),
+                                          check_exact=True)
+
+    def test_the_fit_accounts_for_the_whole_area(self):
+        group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        families = group["families"]
+        self.assertEqual(families["ancestors"], self.droplets.task.nunique())
+        self.assertAlmostEqual(families["daughters"], (self.droplets.path != "").sum() / families["ancestors"], places=12)
+        self.assertTrue(families["lines"])
+        for line in families["lines"]:
+            areas = line["passed"]["area"], line["clogged"], line["small"], line["not_known"]
+            self.assertAlmostEqual(sum(areas), 1, places=12)
+            self.assertAlmostEqual(sum(line["passed"]["areas"]), line["passed"]["area"], places=12)
+        self.assertIn("not known", self.succeed("clogfit", "s.h5").stdout)
+
+    def test_python_reads_and_draws_families(self):
+        sweep = clogsweep.open(self.folder / "s.h5", BIN)
+        pandas.testing.assert_frame_equal(sweep.droplets, self.droplets)
+        self.draw("daughters", "s.h5", "--programs", BIN)
+        self.assert_picture("s-daughters")
+        task = self.deepest().task
+        self.draw("daughters", "s.h5", "--programs", BIN, "--task", task, "--output", "family")
+        self.assert_picture("family")
+        self.draw("daughters", "s.h5", "--programs", BIN, "--task", task, "--frames", 5, "--film", "f.gif")
+        self.assertGreater((self.folder / "f.gif").stat().st_size, 1000)
+        for words, said in ([["--outlet", 7], "try one of 10"], [["--task", 99], "has no family"],
+                            [["--film", "g.gif"], "missing --task"]):
+            self.refuse_analysis("daughters", "s.h5", "--programs", BIN, *words, "--output", "x", words=[said])
+
+    def test_keys_that_daughters_cannot_have_are_refused(self):
+        keys = ["break-up=daughters", "break-up-neck=0.05", "vertices=64"]
+        for words in (["time-step=1e-3"], ["wall-stiffness=50"], ["area-stiffness=5000"], ["near-wall-drag=0.07"],
+                      ["wall-tension=0.6", "line-tension=0.3"], ["obstacle-layout=channel", "orifice=0.7"],
+                      ["model=sp", "wall-stiffness=1"]):
+            with self.subTest(words=words):
+                given = [key for key in keys if "model=sp" not in words or "vertices" not in key]
+                self.refuse("clogsweep", *given, *words, "--dry-run", words=["break-up"])
+        self.refuse("clogsweep", "break-up=daughters", "--dry-run", words=["break-up-neck"])
+
+
+if __name__ == "__main__":
+    unittest.main()

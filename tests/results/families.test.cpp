@@ -1,0 +1,96 @@
+#include "clog/results/families.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "clog/fit/survival.hpp"
+
+namespace clog::results {
+namespace {
+
+Member member(const std::string& path, double diameter, double birth, double end, MemberEnd status) {
+  return {.path = path,
+          .diameter = diameter,
+          .birth = {.distance = birth},
+          .end = {.distance = end},
+          .status = status};
+}
+
+/// A droplet that breaks at 15 into a half and two quarters. The half clogs at 40. One quarter is still
+/// moving at 70, and the other is too small.
+std::vector<Member> family() {
+  const double half = std::sqrt(0.5), quarter = 0.5;
+  return {member("", 1, 0, 15, MemberEnd::broken), member("0", half, 15, 40, MemberEnd::clogged),
+          member("1", half, 15, 30, MemberEnd::broken), member("10", quarter, 30, 70, MemberEnd::flowing),
+          member("11", quarter, 30, 30, MemberEnd::small)};
+}
+
+TEST(Families, CountEachPartOfTheAreaOnce) {
+  const std::vector<std::vector<Member>> families = {family()};
+  const Families found = families_of(families, 0.95);
+  ASSERT_EQ(found.lines.size(), 3);  // at 10, 20 and 50
+  EXPECT_EQ(found.num_daughters, 4);
+  EXPECT_EQ(found.lines[0].passed.number, 1);
+  EXPECT_EQ(found.lines[0].passed.mean, 1);
+  EXPECT_EQ(found.lines[1].passed.number, 2);
+  EXPECT_NEAR(found.lines[1].passed.mean, std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(found.lines[2].passed.area, 0.25, 1e-15);
+  EXPECT_NEAR(found.lines[2].clogged, 0.5, 1e-15);
+  EXPECT_NEAR(found.lines[2].small, 0.25, 1e-15);
+  for (const FamilyLine& line : found.lines)
+    EXPECT_NEAR(line.passed.area + line.clogged + line.small + line.not_known, 1, 1e-14);
+  EXPECT_NEAR(found.clogged.area, 0.5, 1e-15);
+  EXPECT_EQ(found.clogged.numbers[14], 1);  // 0.707
+}
+
+/// Nobody knows how far a droplet would have gone whose run failed.
+TEST(Families, CountTheAreaOfAFailedDaughterAsNotKnown) {
+  std::vector<Member> members = family();
+  members[1].status = MemberEnd::failed;  // the half that ends at 40
+  const std::vector<std::vector<Member>> families = {members};
+  const Families found = families_of(families, 0.95);
+  const FamilyLine& line = found.lines[2];  // at 50
+  EXPECT_EQ(line.clogged, 0);
+  EXPECT_NEAR(line.not_known, 0.5, 1e-15);
+  EXPECT_NEAR(line.passed.area + line.clogged + line.small + line.not_known, 1, 1e-15);
+  EXPECT_EQ(found.clogged.number, 0);
+  EXPECT_NEAR(line.passing, 0.75, 1e-15) << "a quarter of all was too small at 30";
+}
+
+TEST(Families, HaveNoLineBeyondTheFarthestDroplet) {
+  const std::vector<std::vector<Member>> families = {{member("", 1, 0, 9, MemberEnd::flowing)}};
+  EXPECT_TRUE(families_of(families, 0.95).lines.empty());
+}
+
+/// Without break-up, areas are 1, and the share that passes equals the estimate of Kaplan and Meier.
+TEST(Families, ThatDoNotBreakUpGiveTheProductLimitEstimate) {
+  std::vector<std::vector<Member>> families;
+  std::vector<fit::Observation> runs;
+  for (int i = 1; i <= 40; ++i) {
+    const double distance = 3.7 * i;
+    const bool clogs = i % 3 != 0;
+    families.push_back({member("", 1, 0, distance, clogs ? MemberEnd::clogged : MemberEnd::flowing)});
+    runs.push_back({distance, clogs});
+  }
+  const Families found = families_of(families, 0.95);
+  const std::vector<fit::SurvivalStep> survival = fit::survival_curve(runs, 0.95);
+  for (const FamilyLine& line : found.lines) {
+    double expected = 1;
+    for (const fit::SurvivalStep& step : survival)
+      if (step.distance < line.distance) expected = step.probability;
+    EXPECT_NEAR(line.passing, expected, 1e-12) << line.distance;
+    EXPECT_LE(line.interval.lower, line.passing);
+    EXPECT_GE(line.interval.upper, line.passing);
+  }
+}
+
+TEST(Families, OfOneAncestorHaveNoInterval) {
+  const std::vector<std::vector<Member>> families = {family()};
+  EXPECT_TRUE(std::isnan(families_of(families, 0.95).lines.back().interval.lower));
+}
+
+}  // namespace
+}  // namespace clog::results
