@@ -47,13 +47,14 @@ void check_daughters(const RunParameters& run) {
   if (run.dp.break_up_neck == 0)
     refuse("break-up-neck", "no droplet breaks up without break-up-neck", "give break-up-neck");
   if (run.drag.near_wall > 0)
-    refuse("near-wall-drag", "near-wall drag of daughters is not implemented", "give near-wall-drag=0");
+    refuse("near-wall-drag", "the drag of smaller droplets near walls is not known", "give near-wall-drag=0");
   if (run.dp.wall_tension.value_or(1) != 1 || run.dp.receding_angle != run.dp.advancing_angle)
-    refuse("wall-tension", "wetted walls hold no daughters", "give walls that a film of water covers");
+    refuse("wall-tension", "the break-up of droplets on walls that they wet is not modelled",
+           "remove wall-tension, receding-angle and advancing-angle");
   if (scene_of(run).finding != Finding::clogging_length)
     refuse("obstacle-layout", "daughters need obstacles of a periodic array", "give random, lattice or file");
   if (run.obstacles.side_walls == SideWalls::on)
-    refuse("side-walls", "side walls are not implemented for daughters", "give side-walls=off");
+    refuse("side-walls", "daughters need an array that repeats across the flow", "give side-walls=off");
 }
 
 }  // namespace
