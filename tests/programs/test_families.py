@@ -218,6 +218,11 @@ class Families(SweepTest, Analysis):
                 self.refuse("clogsweep", *given, *words, "--dry-run", words=["break-up"])
         self.refuse("clogsweep", "break-up=daughters", "--dry-run", words=["break-up-neck"])
 
+    def test_keys_of_daughters_are_refused_without_them(self):
+        for word in ("smallest-daughter=0.3", "speed-exponent=1"):
+            with self.subTest(word=word):
+                self.refuse("clogsweep", "break-up-neck=0.05", word, "--dry-run", words=[word, "add break-up=daughters"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -52,6 +52,8 @@ def settings_for(name):
         return [*words, "obstacles=posts.csv", *(["release=entrance"] if name.startswith("entrance") else [])]
     elastic = ["preset=elastic"] if name in ("perimeter-stiffness-ratio", "perimeter-stiffness", "friction",
                                              "yield-traction") else []
+    if scope == "daughters":
+        words += ["break-up=daughters", "break-up-neck=0.05"]
     if name == "advancing-angle":
         words.append("wall-tension=0.5")  # Young's angle is then 120 degrees.
     if name == "pitch":

@@ -26,6 +26,7 @@ SURROUNDINGS = {
     "friction": ["obstacle-density=saturated", "preset=elastic", "box=20", "vertices=64", "max-time=60"],
     "yield-traction": ["obstacle-density=saturated", "preset=elastic", "box=20", "vertices=64", "max-time=60"],
     "obstacles": ["box=10", "vertices=64", "max-time=300"],
+    **{key: [*QUICK, "break-up=daughters", "break-up-neck=0.05"] for key in ("smallest-daughter", "speed-exponent")},
     **{key: ["obstacles=one.csv", "box=10", "vertices=64", "max-time=300", "release=entrance"]
        for key in ("entrance", "entrance-from", "entrance-to", "exit", "length")},
 }

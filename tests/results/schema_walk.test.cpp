@@ -63,7 +63,8 @@ sweep::Settings settings_for(const Parameter& parameter) {
     settings.set("preset", "elastic");
     settings.set("friction", "0.1");
   }
-  if (key == "break-up") settings.set("break-up-neck", "0.05");
+  if (key == "break-up" || scope == "daughters") settings.set("break-up-neck", "0.05");
+  if (scope == "daughters") settings.set("break-up", "daughters");
   if (key == "advancing-angle")
     settings.set("wall-tension", "0.5");  // Young's angle must be smaller than the largest possible angle
   if (parameter.key == std::string("gravity")) settings.set("preset", "heavy-interface");

@@ -37,6 +37,9 @@ constexpr ParameterScope channels = {
 constexpr ParameterScope lattices = {
     "lattice", "a random array has no rows", "add obstacle-layout=lattice",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::lattice; }};
+constexpr ParameterScope families = {
+    "daughters", "daughters are not followed", "add break-up=daughters, or leave this key out",
+    [](const RunParameters& run) { return polygons.holds(run) && run.dp.break_up == BreakUp::daughters; }};
 
 // Outside<T> converts a member of type T to a value of the schema and back.
 
@@ -789,17 +792,19 @@ std::vector<Parameter> verdict_entries() {
              .symbol = "d_0",
              .unit = "sigma",
              .meaning = "daughters of a smaller diameter are counted, but not followed",
-             .scope = &polygons,
+             .scope = &families,
              .range = {from(0.05, "its step would be much shorter", "try 0.2"),
                        to(0.7, "the smaller of two daughters has at most a diameter of 0.71", "try 0.2")},
+             .elsewhere = 0.2,
              .before = 0.2}),
       entry("speed-exponent", [](auto& run) -> auto& { return run.drag.speed_exponent; },
             {.column = "speed_exponent",
              .symbol = "n",
              .meaning = "exponent n: the terminal speed of a daughter of diameter d (ancestor: 1) is d^n "
                         "times that of its ancestor",
-             .scope = &polygons,
+             .scope = &families,
              .range = {not_negative, to(2, "no drag gives a larger exponent", "try 1")},
+             .elsewhere = 0.0,
              .before = 0.0}),
   };
 }
@@ -835,6 +840,7 @@ Refusal::About about_scope(const Parameter& parameter) {
   const ParameterScope* const scope = parameter.scope;
   if (scope == &polygons) return {.key = parameter.key, .named = {"model"}};
   if (scope == &own_circles || scope == &lengths) return {.key = parameter.key, .added = "obstacles"};
+  if (scope == &families) return {.key = parameter.key, .added = "break-up"};
   if (scope == &channels || scope == &lattices) return {.key = parameter.key, .added = "obstacle-layout"};
   return {.key = parameter.key};
 }

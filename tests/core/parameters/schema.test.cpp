@@ -8,6 +8,7 @@
 #include <ostream>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "clog/core/tools/error.hpp"
 
@@ -23,6 +24,7 @@ class EveryParameter : public testing::TestWithParam<Parameter> {};
 /// The parameters of a run to which this parameter applies.
 RunParameters run_with(const Parameter& parameter) {
   RunParameters run;
+  if (parameter.scope->word == std::string_view("daughters")) run.dp.break_up = BreakUp::daughters;
   for (const auto& [layout, word] : Words<ObstacleLayout>::all)
     if (!parameter.applies_to(run)) run.obstacles.layout = layout;
   return run;
