@@ -52,8 +52,9 @@ int clogsweep_replay(int argc, const char* const* argv) {
   clogsweep replay sweep.h5 12
   clogsweep replay sweep.h5 12 --droplet 01     one daughter, and those from which it descends
 
-With break-up=daughters, all daughters are compared, too. The exit code is 0 if all bits are the same, 1 if results differ, and 2 if the run cannot be replayed. The run uses the
-row's instruction set; a run that was resumed with another instruction set cannot be repeated.
+With break-up=daughters, all daughters are compared, too. The exit code is 0 if all bits are the same, 1 if
+results differ, and 2 if the run cannot be replayed. The run uses the row's instruction set; a run that was
+resumed with another instruction set cannot be repeated.
 )");
   line.word("file", "sweep file")
       .word("task", "task, the number of a row")

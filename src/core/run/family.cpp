@@ -23,20 +23,8 @@ namespace {
 /// Change this whenever the content of a family's snapshot changes.
 constexpr std::uint64_t family_kind = 0x636c6f6766000001;
 
-MemberEnd end_of(RunStatus status) {
-  switch (status) {
-    case RunStatus::clogged:
-      return MemberEnd::clogged;
-    case RunStatus::broken:
-      return MemberEnd::broken;
-    case RunStatus::passed:
-      return MemberEnd::passed;
-    case RunStatus::flowing:
-      return MemberEnd::flowing;
-    default:
-      return MemberEnd::failed;
-  }
-}
+/// The end with the status's name.
+MemberEnd end_of(RunStatus status) { return meant_by<MemberEnd>(name(status)).value_or(MemberEnd::failed); }
 
 void put(ByteWriter& bytes, const Member& member) {
   bytes.put(std::vector<char>(member.path.begin(), member.path.end()));
