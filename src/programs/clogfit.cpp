@@ -94,13 +94,14 @@ void set_row_angle(const std::string& text, std::vector<results::Group>& groups)
   for (results::Group& group : groups) group.row_angle = angle;
 }
 
-/// @throws Error if there is no device, or if a line is behind the exit of a device, because droplets are not
-/// followed there
-void require_lines_in_devices(const std::string& text, const std::vector<double>& lines,
-                              const std::vector<results::Group>& groups) {
+/// @throws Error if there are neither devices nor families, or if a line is behind the exit of a device,
+/// because droplets are not followed there
+void require_place_for_lines(const std::string& text, const std::vector<double>& lines,
+                             const std::vector<results::Group>& groups) {
   bool is_any = false;
   for (const results::Group& group : groups) {
     const RunParameters& run = group.first_row.parameters;
+    is_any = is_any || group.families.num_ancestors > 0;
     if (!results::is_device(run)) continue;
     is_any = true;
     const double exit = run.obstacles.exit, last = std::ranges::max(lines);
@@ -112,7 +113,7 @@ void require_lines_in_devices(const std::string& text, const std::vector<double>
   }
   if (!is_any)
     throw Error(
-        "no place for --lines (no run has release=entrance or an exit, so there is no device); leave it out");
+        "no place for --lines (no run has release=entrance, an exit or break-up=daughters); leave it out");
 }
 
 int clogfit(int argc, const char* const* argv) {
@@ -129,10 +130,10 @@ int clogfit(int argc, const char* const* argv) {
       .option(
           "pool",
           "join groups that differ only in these keys: max-time, boxes, or both with a comma between them")
-      .option(
-          "lines",
-          "x1,x2,...: lines across a device at which droplets that passed are counted; by default at every "
-          "row of posts [sigma]")
+      .option("lines",
+              "x1,x2,...: lines at which droplets that passed are counted: across a device (by default at "
+              "every row "
+              "of posts), and for daughters beside 10, 20, 50, 100, ... [sigma]")
       .option("row-angle", "tilt of the rows of user-supplied circles from the flow towards +y [degrees]")
       .option("dwell", "droplets that rest for this time count as clogged [t0]")
       .option("mixture",
@@ -166,7 +167,7 @@ int clogfit(int argc, const char* const* argv) {
   const std::vector<double> lines = line.get_positives("lines");
   std::vector<results::Group> groups =
       results::group_runs(sweep.rows, confidence, from_distance, dwell, pooled, lines);
-  if (line.has("lines")) require_lines_in_devices(line.get("lines"), lines, groups);
+  if (line.has("lines")) require_place_for_lines(line.get("lines"), lines, groups);
   if (line.has("row-angle")) set_row_angle(line.get("row-angle"), groups);
   set_scales(line, groups);
   std::optional<results::Mixture> mixture;

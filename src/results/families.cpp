@@ -13,6 +13,7 @@ namespace clog::results {
 namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double round_off = 1e-6;  // of places [sigma]
 
 double area_of(const Member& member) { return member.diameter * member.diameter; }
 
@@ -31,8 +32,8 @@ struct Leaf {
 /// One family as a tree.
 class Tree {
  public:
-  explicit Tree(const std::vector<Member>& members) {
-    for (const Member& member : members) members_.emplace(member.path, &member);
+  explicit Tree(const ReleasedFamily& family) : release_(family.release) {
+    for (const Member& member : family.members) members_.emplace(member.path, &member);
   }
 
   /// Calls visit(member, true) for each droplet that is the first of its line of descent to pass the line.
@@ -42,7 +43,7 @@ class Tree {
     const auto found = members_.find(path);
     if (found == members_.end()) return;
     const Member& member = *found->second;
-    const bool passes = std::max(member.birth.distance, member.end.distance) >= distance;
+    const bool passes = reach_of(member) >= distance - round_off;
     if (passes || member.status != MemberEnd::broken) {
       visit(member, passes);
       return;
@@ -52,18 +53,23 @@ class Tree {
 
   std::vector<Leaf> leaves() const {
     std::vector<Leaf> all;
-    add_leaves("", 0, all);
+    add_leaves("", release_, all);
     return all;
   }
 
  private:
   std::map<std::string, const Member*> members_;
+  double release_;
+
+  double reach_of(const Member& member) const {
+    return release_ + std::max(member.birth.distance, member.end.distance);
+  }
 
   void add_leaves(const std::string& path, double reach, std::vector<Leaf>& all) const {
     const auto found = members_.find(path);
     if (found == members_.end()) return;
     const Member& member = *found->second;
-    reach = std::max({reach, member.birth.distance, member.end.distance});
+    reach = std::max(reach, reach_of(member));
     if (member.status != MemberEnd::broken) all.push_back({&member, reach});
     for (const char part : {'0', '1'}) add_leaves(path + part, reach, all);
   }
@@ -87,11 +93,15 @@ void make_means(Diameters& all, double num_ancestors) {
     for (double& sum : *sums) sum /= num_ancestors;
 }
 
-std::vector<double> lines_up_to(double farthest) {
-  std::vector<double> lines;
+/// Lines of 10, 20, 50, 100, ... sigma, and more lines.
+std::vector<double> lines_up_to(double farthest, std::span<const double> more_lines) {
+  std::vector<double> lines(more_lines.begin(), more_lines.end());
   for (double decade = 10; decade <= farthest; decade *= 10)
     for (const double factor : {1, 2, 5})
       if (factor * decade <= farthest) lines.push_back(factor * decade);
+  std::ranges::sort(lines);
+  const auto is_same = [](double one, double other) { return other - one < round_off; };
+  lines.erase(std::unique(lines.begin(), lines.end(), is_same), lines.end());
   return lines;
 }
 
@@ -114,7 +124,7 @@ class ProductLimit {
     double share = 1;
     auto step = steps_.begin();
     for (const double line : lines) {
-      for (; step != steps_.end() && step->reach < line; ++step) {
+      for (; step != steps_.end() && step->reach < line - round_off; ++step) {
         const double area = times[step->family] * step->area;
         if (step->is_end && at_risk > 0) share *= std::max(0.0, 1 - area / at_risk);
         at_risk -= area;
@@ -178,17 +188,18 @@ FamilyLine line_at(double distance, const std::vector<Tree>& trees) {
 
 }  // namespace
 
-Families families_of(std::span<const std::vector<Member>> families, double confidence) {
+Families families_of(std::span<const ReleasedFamily> families, double confidence,
+                     std::span<const double> more_lines) {
   fit::require_confidence(confidence);
   Families found;
   if (families.empty()) return found;
   std::vector<Tree> trees;
   std::vector<std::vector<Leaf>> leaves;
   double farthest = 0, num_daughters = 0;
-  for (const std::vector<Member>& family : families) {
+  for (const ReleasedFamily& family : families) {
     trees.emplace_back(family);
     leaves.push_back(trees.back().leaves());
-    num_daughters += static_cast<double>(family.size() - 1);
+    num_daughters += static_cast<double>(family.members.size() - 1);
     for (const Leaf& leaf : leaves.back()) {
       farthest = std::max(farthest, leaf.reach);
       if (leaf.member->status == MemberEnd::clogged) add(*leaf.member, found.clogged);
@@ -198,7 +209,7 @@ Families families_of(std::span<const std::vector<Member>> families, double confi
   found.num_ancestors = static_cast<int>(families.size());
   found.num_daughters = num_daughters / num_ancestors;
   make_means(found.clogged, num_ancestors);
-  const std::vector<double> distances = lines_up_to(farthest);
+  const std::vector<double> distances = lines_up_to(farthest, more_lines);
   for (const double distance : distances) found.lines.push_back(line_at(distance, trees));
   const ProductLimit estimator(leaves);
   const std::vector<double> passing = estimator.at(distances, std::vector<int>(families.size(), 1));

@@ -346,12 +346,16 @@ std::vector<const sweep::Column*> pooled_columns(const std::string& keys) {
   return columns;
 }
 
-/// The families of the runs that are over and intact.
-static Families families_of(const std::vector<const sweep::RunRow*>& runs, double confidence) {
-  std::vector<std::vector<Member>> families;
+/// The families of the runs that are over and intact. The exit of a device is one of the lines.
+static Families families_of(const std::vector<const sweep::RunRow*>& runs, double confidence,
+                            std::span<const double> lines) {
+  std::vector<ReleasedFamily> families;
   for (const sweep::RunRow* run : runs)
-    if (!run->family.empty() && sweep::fault_of(*run).empty()) families.push_back(run->family);
-  return families_of(families, confidence);
+    if (!run->family.empty() && sweep::fault_of(*run).empty())
+      families.push_back({run->family, is_device(run->parameters) ? run->release[0] : 0});
+  std::vector<double> all_lines(lines.begin(), lines.end());
+  if (const double exit = runs.front()->parameters.obstacles.exit; exit > 0) all_lines.push_back(exit);
+  return families_of(families, confidence, all_lines);
 }
 
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance,
@@ -372,7 +376,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.are_runs_equal = fit::are_mostly_equal(tally.clogs.empty() ? tally.others : tally.clogs);
     fit_meetings(group, tally.meetings, confidence);
     if (is_device(run)) group.passages = passages_of(run, tally.arrivals, lines, confidence);
-    group.families = families_of(runs, confidence);
+    group.families = families_of(runs, confidence, lines);
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(tally.speeds));
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(tally.travels));
     group.relative_speed_all = mean_speed_of_all(tally.travels_until_arrest, run.drag.terminal_speed);

@@ -194,6 +194,32 @@ class Families(SweepTest, Analysis):
             self.assertAlmostEqual(sum(line["passed"]["areas"]), line["passed"]["area"], places=12)
         self.assertIn("not known", self.succeed("clogfit", "s.h5").stdout)
 
+    def test_more_lines_are_counted_as_pandas_counts_them(self):
+        """A droplet is counted at the first line that it, or a droplet from which it descends, passes."""
+        lines = json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines", "3,7").stdout)
+        for line in lines["groups"][0]["families"]["lines"]:
+            reach = self.droplets[["birth_distance", "end_distance"]].max(axis=1)
+            passed = self.droplets[reach >= line["distance"]]
+            known = {(one.task, one.path) for one in passed.itertuples()}
+            first = [one for one in passed.itertuples()
+                     if not any((one.task, one.path[:size]) in known for size in range(len(one.path)))]
+            self.assertAlmostEqual(line["passed"]["number"], len(first) / 4)
+        self.assertEqual([line["distance"] for line in lines["groups"][0]["families"]["lines"]][:2], [3, 7])
+
+    def test_the_exit_of_a_device_is_a_line(self):
+        (self.folder / "posts.csv").write_text("x,y,diameter\n" + "".join(
+            f"{x},{y},0.3\n" for x in range(4, 12, 2) for y in range(1, 20, 2)))
+        self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
+                     "line-tension=0.05", "vertices=64", "obstacles=posts.csv", "box=20", "length=20", "exit=15",
+                     "release=entrance", "max-time=2000", "seeds=1..3", "--quiet", "--output", "d.h5")
+        group, = json.loads(self.succeed("clogfit", "d.h5", "--format", "json").stdout)["groups"]
+        line = next(line for line in group["families"]["lines"] if line["distance"] == 15)
+        found = droplets(self.folder / "d.h5")
+        self.assertGreater(len(found), 3)
+        leaves = found[found.status != "broken"]
+        self.assertAlmostEqual(line["passed"]["area"], (leaves[leaves.status == "passed"].diameter**2).sum() / 3)
+        self.assertAlmostEqual(sum(line[name] for name in ("clogged", "small", "not_known")) + line["passed"]["area"], 1)
+
     def test_python_reads_and_draws_families(self):
         sweep = clogsweep.open(self.folder / "s.h5", BIN)
         pandas.testing.assert_frame_equal(sweep.droplets, self.droplets)
@@ -204,7 +230,8 @@ class Families(SweepTest, Analysis):
         self.assert_picture("family")
         self.draw("daughters", "s.h5", "--programs", BIN, "--task", task, "--frames", 5, "--film", "f.gif")
         self.assertGreater((self.folder / "f.gif").stat().st_size, 1000)
-        for words, said in ([["--outlet", 7], "try one of 10"], [["--task", 99], "has no family"],
+        self.draw("daughters", "s.h5", "--programs", BIN, "--outlet", 7, "--output", "seven")
+        for words, said in ([["--outlet", "7mm"], "no common diameter in mm"], [["--task", 99], "has no family"],
                             [["--film", "g.gif"], "missing --task"]):
             self.refuse_analysis("daughters", "s.h5", "--programs", BIN, *words, "--output", "x", words=[said])
 

@@ -29,7 +29,7 @@ std::vector<Member> family() {
 }
 
 TEST(Families, CountEachPartOfTheAreaOnce) {
-  const std::vector<std::vector<Member>> families = {family()};
+  const std::vector<ReleasedFamily> families = {{family()}};
   const Families found = families_of(families, 0.95);
   ASSERT_EQ(found.lines.size(), 3);  // at 10, 20 and 50
   EXPECT_EQ(found.num_daughters, 4);
@@ -50,7 +50,7 @@ TEST(Families, CountEachPartOfTheAreaOnce) {
 TEST(Families, CountTheAreaOfAFailedDaughterAsNotKnown) {
   std::vector<Member> members = family();
   members[1].status = MemberEnd::failed;  // the half that ends at 40
-  const std::vector<std::vector<Member>> families = {members};
+  const std::vector<ReleasedFamily> families = {{members}};
   const Families found = families_of(families, 0.95);
   const FamilyLine& line = found.lines[2];  // at 50
   EXPECT_EQ(line.clogged, 0);
@@ -61,18 +61,18 @@ TEST(Families, CountTheAreaOfAFailedDaughterAsNotKnown) {
 }
 
 TEST(Families, HaveNoLineBeyondTheFarthestDroplet) {
-  const std::vector<std::vector<Member>> families = {{member("", 1, 0, 9, MemberEnd::flowing)}};
+  const std::vector<ReleasedFamily> families = {{{member("", 1, 0, 9, MemberEnd::flowing)}}};
   EXPECT_TRUE(families_of(families, 0.95).lines.empty());
 }
 
 /// Without break-up, areas are 1, and the share that passes equals the estimate of Kaplan and Meier.
 TEST(Families, ThatDoNotBreakUpGiveTheProductLimitEstimate) {
-  std::vector<std::vector<Member>> families;
+  std::vector<ReleasedFamily> families;
   std::vector<fit::Observation> runs;
   for (int i = 1; i <= 40; ++i) {
     const double distance = 3.7 * i;
     const bool clogs = i % 3 != 0;
-    families.push_back({member("", 1, 0, distance, clogs ? MemberEnd::clogged : MemberEnd::flowing)});
+    families.push_back({{member("", 1, 0, distance, clogs ? MemberEnd::clogged : MemberEnd::flowing)}});
     runs.push_back({distance, clogs});
   }
   const Families found = families_of(families, 0.95);
@@ -87,8 +87,20 @@ TEST(Families, ThatDoNotBreakUpGiveTheProductLimitEstimate) {
   }
 }
 
+/// The coordinates of a device begin elsewhere than the release.
+TEST(Families, AreCountedAtMoreLinesAndFromTheRelease) {
+  const double lines[] = {20, 17};
+  const std::vector<ReleasedFamily> families = {{family()}}, released_at_4 = {{family(), 4}};
+  const Families found = families_of(families, 0.95, lines),
+                 in_device = families_of(released_at_4, 0.95, lines);
+  ASSERT_EQ(found.lines.size(), 4);  // at 10, 17, 20 and 50
+  EXPECT_EQ(found.lines[1].distance, 17);
+  EXPECT_EQ(found.lines[1].passed.number, 2);
+  EXPECT_EQ(in_device.lines[1].passed.number, 1) << "the ancestor broke up at 19";
+}
+
 TEST(Families, OfOneAncestorHaveNoInterval) {
-  const std::vector<std::vector<Member>> families = {family()};
+  const std::vector<ReleasedFamily> families = {{family()}};
   EXPECT_TRUE(std::isnan(families_of(families, 0.95).lines.back().interval.lower));
 }
 

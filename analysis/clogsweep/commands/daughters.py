@@ -7,7 +7,7 @@
 
 The upper panels show two results against the distance from the release: the share of the droplets' area that passes,
 with its interval, and the number of droplets that pass per released droplet. The lower panel is the distribution of the
-diameters at the distance given by --outlet, where droplets leave the array. With --task, the picture shows one family:
+diameters at the distance given by --outlet, where droplets leave the array; in a device, this is an x. With --task, the picture shows one family:
 a bar for each droplet, from its birth to its end, as thick as the droplet's diameter. With --film, all droplets of this
 family move in the array; each is replayed, the camera follows those that move, and those that clog stay. A droplet that
 was too small to be followed is a circle where it was born. The film is FILM.mp4 with ffmpeg, otherwise FILM.gif.
@@ -25,10 +25,16 @@ from ..tools.errors import UserError
 from . import command_line
 
 
+def outlet(word: str) -> tuple[float, str]:
+    """A distance and its unit."""
+    unit = "mm" if word.endswith("mm") else "sigma"
+    return command_line.between(0, 1e7, "a distance in sigma, or in mm such as 100mm")(word.removesuffix("mm")), unit
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--outlet", type=command_line.between(0, 1e7, "a distance in sigma"), metavar="X",
-                        help="line at which diameters are counted: 10, 20, 50, 100, ... sigma (the last one that at "
-                             "most a tenth of the area may still pass)")
+    parser.add_argument("--outlet", type=outlet, metavar="X",
+                        help="line at which diameters are counted, in sigma, or in mm such as 100mm (the last of 10, "
+                             "20, 50, 100, ... sigma and the exit that at most a tenth of the area may still pass)")
     parser.add_argument("--task", type=command_line.whole(0), help="draw the family of this run")
     parser.add_argument("--film", type=pathlib.Path, help="with --task: make this film of the family, .mp4 or .gif")
     parser.add_argument("--frames", type=command_line.whole(2), default=300, help="number of frames of the film (300)")
@@ -56,10 +62,17 @@ def body() -> int:
     with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
         droplets = stored.droplets(file)
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
-    fit = Fit(*fits.fitted(clogfit, arguments.sweep, *command_line.lab_options(arguments)))
+    options = command_line.lab_options(arguments)
+    fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options))
     groups: Groups = fit.known.finished(arguments.sweep)
     if arguments.task is not None:
         figure = families.draw_family(droplets, arguments.task, arguments.sweep, groups)
     else:
-        figure = families.draw(groups, arguments.outlet, arguments.sweep)
+        place = None
+        if arguments.outlet is not None:
+            families.with_families(groups, arguments.sweep)  # refuses a sweep without families
+            place = families.in_sigma(*arguments.outlet, groups)
+            fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{place:.17g}"))
+            groups = fit.known.finished(arguments.sweep)
+        figure = families.draw(groups, place, arguments.sweep)
     return command_line.save(Picture(figure, fit.source), arguments)

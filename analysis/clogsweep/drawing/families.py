@@ -39,18 +39,26 @@ def line_at(group: Group, distance: float) -> dict[str, Any] | None:
     return next((line for line in group["families"]["lines"] if math.isclose(line["distance"], distance)), None)
 
 
+def in_sigma(place: float, unit: str, groups: Groups) -> float:
+    """A place in droplet diameters. @throws UserError  if it is in mm, and the droplets have no common diameter in mm"""
+    if unit == "sigma":
+        return place
+    length = groups.laboratory.get("length_mm")
+    if not length:
+        raise UserError(f"invalid --outlet={place:g}mm (the droplets have no common diameter in mm) give the outlet in "
+                        "droplet diameters, or add --lab FILE with one diameter")
+    return place / length
+
+
 def outlet_of(members: Sequence[Group], asked: float | None) -> float:
-    """Distance of the line at which the distribution of diameters is taken [sigma]: the one asked for, or the farthest
+    """Place of the line at which the distribution of diameters is taken [sigma]: the one asked for, or the farthest
     line at which most of the area is known (the first line if there is none). @throws UserError  if no droplet reached
-    a line, or none reached the one asked for"""
+    a line, and none was asked for"""
+    if asked is not None:
+        return asked
     known = sorted({line["distance"] for group in members for line in group["families"]["lines"]})
     if not known:
-        raise UserError("no droplet went 10 sigma; make max-time longer")
-    if asked is not None:
-        if any(math.isclose(asked, distance) for distance in known):
-            return asked
-        raise UserError(f"invalid --outlet={asked:g} (no droplet reached it, or it is no line of clogfit) "
-                        f"try one of {', '.join(f'{distance:g}' for distance in known)}")
+        raise UserError("no droplet went 10 sigma; give --outlet X with a smaller distance, or make max-time longer")
 
     def is_known(distance: float) -> bool:
         lines = [line_at(group, distance) for group in members]
@@ -87,8 +95,9 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
         style.logarithmic_abscissa(axes, known)
     share.set_ylim(0, 1.05)
     number.set_ylim(bottom=0)
-    style.label(share, r"distance from the release $x/\sigma$", "share of the area that passes")
-    style.label(number, r"distance from the release $x/\sigma$", "droplets that pass, per droplet")
+    place = "place in the device" if any(group.get("passages") for group in members) else "distance from the release"
+    style.label(share, rf"{place} $x/\sigma$", "share of the area that passes")
+    style.label(number, rf"{place} $x/\sigma$", "droplets that pass, per droplet")
     sizes.set_ylim(bottom=0)
     style.label(sizes, r"diameter $d/\sigma$",
                 rf"droplets per droplet at ${outlet:g}\,\sigma$, in classes of {width:g}")

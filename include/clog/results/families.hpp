@@ -24,10 +24,16 @@ struct Diameters {
   std::array<double, num_diameter_classes> numbers{}, areas{};
 };
 
+/// A family, and where its ancestor was released.
+struct ReleasedFamily {
+  std::vector<Member> members;
+  double release = 0;  ///< x in a device, otherwise 0 [sigma]
+};
+
 /// The fate of the ancestors' area at a line across the flow. A droplet passes the line when it is beyond the
 /// line for the first time, and no droplet from which it descends has passed before.
 struct FamilyLine {
-  double distance;   ///< from the release [sigma]
+  double distance;   ///< from the release, or x in a device [sigma]
   Diameters passed;  ///< droplets that passed the line, with the diameters that they had then
   /// Area that did not pass: of droplets that clogged before the line, of droplets before it that were too
   /// small to be followed, and of droplets that were still moving or failed. The four areas add up to 1.
@@ -47,8 +53,9 @@ struct Families {
   Diameters clogged;  ///< droplets that clogged
 };
 
-/// Statistics of the rows with a family, at lines of 10, 20, 50, 100, ... sigma as far as any droplet went.
-/// @throws std::invalid_argument unless 0 < confidence < 1
-Families families_of(std::span<const std::vector<Member>> families, double confidence);
+/// Statistics of families at lines of 10, 20, 50, 100, ... sigma, as far as any droplet went, and at more
+/// lines. @throws std::invalid_argument unless 0 < confidence < 1
+Families families_of(std::span<const ReleasedFamily> families, double confidence,
+                     std::span<const double> more_lines = {});
 
 }  // namespace clog::results

@@ -162,7 +162,8 @@ std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 /// @param pooled  columns of max-time and boxes that do not separate groups. If several runs have equal seeds
 /// and arrays, only the run with the largest max-time counts. Runs with different `boxes` all count, because
 /// equal seeds then give different arrays.
-/// @param lines  x of the passages in devices; by default those of the rows of posts [sigma]
+/// @param lines  x of the passages in devices, by default those of the rows of posts; also lines for families
+/// [sigma]
 /// @throws Error if the rows do not record which droplets rested for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0,
