@@ -218,7 +218,8 @@ class Families(SweepTest, Analysis):
         self.assertGreater(len(found), 3)
         leaves = found[found.status != "broken"]
         self.assertAlmostEqual(line["passed"]["area"], (leaves[leaves.status == "passed"].diameter**2).sum() / 3)
-        self.assertAlmostEqual(sum(line[name] for name in ("clogged", "small", "not_known")) + line["passed"]["area"], 1)
+        others = sum(line[name] for name in ("clogged", "small", "not_known"))
+        self.assertAlmostEqual(others + line["passed"]["area"], 1)
 
     def test_python_reads_and_draws_families(self):
         sweep = clogsweep.open(self.folder / "s.h5", BIN)
@@ -248,7 +249,8 @@ class Families(SweepTest, Analysis):
     def test_keys_of_daughters_are_refused_without_them(self):
         for word in ("smallest-daughter=0.3", "speed-exponent=1"):
             with self.subTest(word=word):
-                self.refuse("clogsweep", "break-up-neck=0.05", word, "--dry-run", words=[word, "add break-up=daughters"])
+                self.refuse("clogsweep", "break-up-neck=0.05", word, "--dry-run",
+                            words=[word, "add break-up=daughters"])
 
 
 if __name__ == "__main__":

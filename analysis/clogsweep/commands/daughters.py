@@ -7,10 +7,11 @@
 
 The upper panels show two results against the distance from the release: the share of the droplets' area that passes,
 with its interval, and the number of droplets that pass per released droplet. The lower panel is the distribution of the
-diameters at the distance given by --outlet, where droplets leave the array; in a device, this is an x. With --task, the picture shows one family:
-a bar for each droplet, from its birth to its end, as thick as the droplet's diameter. With --film, all droplets of this
-family move in the array; each is replayed, the camera follows those that move, and those that clog stay. A droplet that
-was too small to be followed is a circle where it was born. The film is FILM.mp4 with ffmpeg, otherwise FILM.gif.
+diameters at the distance given by --outlet, where droplets leave the array; in a device, this is an x. With --task, the
+picture shows one family: a bar for each droplet, from its birth to its end, as thick as the droplet's diameter. With
+--film, all droplets of this family move in the array; each is replayed, the camera follows those that move, and those
+that clog stay. A droplet that was too small to be followed is a circle where it was born. The film is FILM.mp4 with
+ffmpeg, otherwise FILM.gif.
 """
 
 import argparse

@@ -40,7 +40,7 @@ def line_at(group: Group, distance: float) -> dict[str, Any] | None:
 
 
 def in_sigma(place: float, unit: str, groups: Groups) -> float:
-    """A place in droplet diameters. @throws UserError  if it is in mm, and the droplets have no common diameter in mm"""
+    """A place in droplet diameters. @throws UserError  if it is in mm, and the droplets have no common diameter"""
     if unit == "sigma":
         return place
     length = groups.laboratory.get("length_mm")
