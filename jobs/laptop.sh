@@ -16,9 +16,9 @@ sweep=(mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$results
 "${sweep[@]}"
 # Without friction only stiff droplets are run: softer ones would not clog in this time.
 "${sweep[@]}" friction=0 line-tension=0.35,0.4,0.5,0.6
-"$bin/clogfit" "$results/sweep.h5" --format json >"$results/fit.json"
 # Debian's own Python has the packages, but another Python may come first in the path.
-PYTHONPATH=analysis /usr/bin/python3 -m clogsweep clogging-length "$results/fit.json" --output "$results/clogging-length"
+PYTHONPATH=analysis /usr/bin/python3 -m clogsweep clogging-length "$results/sweep.h5" --programs "$bin" \
+    --output "$results/clogging-length"
 echo
 "$bin/clogfit" "$results/sweep.h5" | tee "$results/fit.txt"
 echo
