@@ -107,6 +107,15 @@ std::vector<RunParameters> both_runs(const Parameter& parameter) {
   return {one, sweep::Plan(settings).task(0)};
 }
 
+/// A sweep stores its settings in its file, and sends them to its ranks.
+TEST_P(EveryKey, IsReadBackFromStoredSettings) {
+  const Parameter& parameter = GetParam();
+  sweep::Settings settings = settings_for(parameter);
+  settings.set(parameter.key, other_value(parameter, settings));
+  const sweep::Plan plan(settings), again(sweep::Settings::from_packed(settings.packed()));
+  EXPECT_EQ(sweep::identity(sweep::describe(again.task(0))), sweep::identity(sweep::describe(plan.task(0))));
+}
+
 TEST_P(EveryKey, MakesTwoIdentities) {
   const auto runs = both_runs(GetParam());
   EXPECT_NE(sweep::identity(sweep::describe(runs[0])), sweep::identity(sweep::describe(runs[1])));
