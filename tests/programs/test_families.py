@@ -182,6 +182,10 @@ class Families(SweepTest, Analysis):
         pandas.testing.assert_frame_equal(droplets(self.folder / "k.h5"), droplets(self.folder / "whole.h5"),
                                           check_exact=True)
 
+    def test_the_table_says_which_droplets_its_lengths_count(self):
+        self.assertIn("daughters: lambda, lambda_b and clogs count the released droplets only",
+                      self.succeed("clogfit", "s.h5").stdout)
+
     def test_the_fit_accounts_for_the_whole_area(self):
         group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
         families = group["families"]

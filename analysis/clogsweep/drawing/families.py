@@ -85,7 +85,10 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
         shifted = [place * style.side_by_side(index, len(members), places) for place in places]
         marker = style.MARKERS[index % len(style.MARKERS)]
         share.errorbar(shifted, passing, yerr=np.abs(np.array(ends) - passing), color=colour, marker=marker, capsize=2)
-        number.plot(places, [line["passed"]["number"] for line in lines], color=colour, marker=marker)
+        number.plot(places, [line["passed"]["number"] for line in lines], color=colour)
+        for line in lines:
+            number.plot(line["distance"], line["passed"]["number"], color=colour, marker=marker,
+                        fillstyle="none" if line["not_known"] > MOST_UNKNOWN else "full")
         at_outlet = line_at(group, outlet)
         if at_outlet:
             numbers = at_outlet["passed"]["numbers"]
@@ -109,7 +112,8 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
     style.notes_of_panels(figure, [
         "bars: intervals from resampled released droplets; a droplet passes when it, or one from which it descends, "
         "first crosses the line",
-        f"at {outlet:g}σ the fate of at most {100 * max(unknown, default=0):.2g} % of the area is not known"])
+        f"at {outlet:g}σ the fate of at most {100 * max(unknown, default=0):.2g} % of the area is not known; "
+        f"hollow: of more than {100 * MOST_UNKNOWN:g} %, so more droplets may still pass"])
     return figure
 
 
