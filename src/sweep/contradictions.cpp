@@ -55,8 +55,9 @@ void refuse_interface_keys(const Settings& settings) {
 }
 
 /// The stiffnesses and the step of a daughter are automatic, so those of the ancestor must be automatic, too.
+/// Soft disks, which need a wall-stiffness, are refused for break-up itself.
 void refuse_given_stiffnesses_of_families(const Settings& settings) {
-  if (settings.text("break-up") == name(BreakUp::end)) return;
+  if (settings.text("break-up") == name(BreakUp::end) || settings.text("model") == name(Model::sp)) return;
   for (const char* key : {"time-step", "wall-stiffness", "area-stiffness", "perimeter-stiffness"})
     if (is_changed(settings, key)) refuse_one_of(settings, key, "break-up");
 }

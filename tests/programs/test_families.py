@@ -247,7 +247,8 @@ class Families(SweepTest, Analysis):
                       ["model=sp", "wall-stiffness=1"]):
             with self.subTest(words=words):
                 given = [key for key in keys if "model=sp" not in words or "vertices" not in key]
-                self.refuse("clogsweep", *given, *words, "--dry-run", words=["break-up"])
+                self.refuse("clogsweep", *given, *words, "--dry-run",
+                            words=["break-up", *(["model=sp"] if "model=sp" in words else [])])
         self.refuse("clogsweep", "break-up=daughters", "--dry-run", words=["break-up-neck"])
 
     def test_keys_of_daughters_are_refused_without_them(self):
