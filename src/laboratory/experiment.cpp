@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
@@ -28,10 +30,14 @@ const std::map<std::string, double>& known_units(const std::string& quantity) {
   return units.at(quantity);
 }
 
-/// Replaces the micro sign, for which there are two code points, by u.
-std::string with_plain_micro(const std::string& unit) {
-  for (const std::string_view sign : {"µ", "μ"})
-    if (unit.starts_with(sign)) return std::string("u").append(unit, sign.size());
+/// The unit with u for the micro sign, for which there are two code points, and with ^2 and ^3 for other
+/// forms of powers, as in mm2 and mm².
+std::string plain_unit(std::string unit) {
+  const std::pair<const char*, const char*> forms[] = {{"µ", "u"}, {"μ", "u"}, {"²", "^2"}, {"³", "^3"}};
+  for (const auto& [form, plain] : forms)
+    if (const auto found = unit.find(form); found != std::string::npos)
+      unit.replace(found, std::strlen(form), plain);
+  if (unit.ends_with("m2") || unit.ends_with("m3")) unit.insert(unit.size() - 1, "^");
   return unit;
 }
 
@@ -45,7 +51,7 @@ const std::string& usual_unit(const std::string& quantity) {
 /// Factor of a unit. @throws Error
 double si_factor(const std::string& unit, const std::string& units) {
   const auto& known = known_units(units);
-  if (const auto found = known.find(with_plain_micro(unit)); found != known.end()) return found->second;
+  if (const auto found = known.find(plain_unit(unit)); found != known.end()) return found->second;
   std::string names;
   for (const auto& [name, factor] : known) names += (names.empty() ? "" : ", ") + name;
   throw Error("unknown unit '" + unit + "' for " + units + " (known: " + names + ")");

@@ -140,7 +140,7 @@ std::string in_model_units(const std::string& key, const std::string& text, cons
       {"g rho sigma^2", {"tension", scales.tension}}};
   const auto unit = units.find(known.parameter ? known.parameter->unit : "");
   static const std::regex number_with_unit(
-      "[-+]?([0-9.]+(?:[eE][-+]?[0-9]+)?) *((?:/?[A-Za-z]|\xc2\xb5|\xce\xbc)[A-Za-z/^2]*)");
+      "[-+]?([0-9.]+(?:[eE][-+]?[0-9]+)?) *(/?(?:[A-Za-z]|\xc2\xb5|\xce\xbc)(?:[A-Za-z/^2]|\xc2\xb2)*)");
   std::string converted;
   const char* rest = text.data();
   for (const std::string_view written : sweep::numbers_in(text)) {

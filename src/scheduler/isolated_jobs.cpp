@@ -17,7 +17,9 @@
 #include <utility>
 
 #include "bytes.hpp"
+#include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/tools/descriptor.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/messages.hpp"
@@ -120,12 +122,24 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
   }
 }
 
+/// Makes the jobs that the rank describes. If this throws, the helper ends with one line, and the rank
+/// computes the tasks itself.
+JobFactory described_jobs(const IsolatedJobs::Describe& describe, const std::string& description) noexcept {
+  try {
+    return describe(description);
+  } catch (const std::exception& error) {
+    console::say(
+        fmt::format("no process for tasks can start ({}); their rank computes them itself", error.what()));
+    _exit(console::exit_internal_fault);
+  }
+}
+
 /// Main function of the helper: forks one process after the other. The rank makes a socket for each of them.
 [[noreturn]] void start_processes(const Socket& rank, const IsolatedJobs::Describe& describe) noexcept {
   const auto description = rank.receive();
   if (!description) _exit(0);
   const auto* text = reinterpret_cast<const char*>(description->bytes.data());
-  const JobFactory make_job = describe({text, description->bytes.size()});
+  const JobFactory make_job = described_jobs(describe, {text, description->bytes.size()});
   pid_t last = -1;
   while (true) {
     Socket socket = rank.receive_socket();

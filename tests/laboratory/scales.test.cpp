@@ -72,6 +72,8 @@ TEST(InModelUnits, ConvertsEachNumberThatHasAUnit) {
   EXPECT_EQ(in_model_units("obstacle-gap", "500µm,lin(200 μm,1mm,3)", scales), "0.25,lin(0.1,0.5,3)");
   EXPECT_EQ(in_model_units("obstacle-gap", "-1mm, lin(1mm", scales), "-0.5, lin(0.5");
   EXPECT_EQ(in_model_units("obstacle-density", "0.5/mm^2,saturated,12%", scales), "2,saturated,12%");
+  for (const char* area : {"0.5/mm2", "0.5/mm²", "0.5 /mm^2", "0.5e-6/µm²"})
+    EXPECT_EQ(in_model_units("obstacle-density", area, scales), "2") << area;
   EXPECT_EQ(in_model_units("max-time", "2min", scales), "240");
   EXPECT_EQ(in_model_units("terminal-speed", "1 mm/s", scales), "0.25");
   EXPECT_EQ(in_model_units("line-tension", "2mN/m", scales), "0.5");

@@ -6,6 +6,7 @@ import signal
 import unittest
 
 import h5py
+import matplotlib.text
 import numpy as np
 import pandas
 import stored_rows
@@ -212,18 +213,20 @@ class Families(SweepTest, Analysis):
 
     def test_the_exit_of_a_device_is_a_line(self):
         (self.folder / "posts.csv").write_text("x,y,diameter\n" + "".join(
-            f"{x},{y},0.3\n" for x in range(4, 12, 2) for y in range(1, 20, 2)))
+            f"{x},{2 * y + 0.5 + x // 2 % 2},0.3\n" for x in range(4, 12, 2) for y in range(10)))
         self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
                      "line-tension=0.05", "vertices=64", "obstacles=posts.csv", "box=20", "length=20", "exit=15",
-                     "release=entrance", "max-time=2000", "seeds=1..3", "--quiet", "--output", "d.h5")
+                     "release=entrance", "max-time=2000", "seeds=1..6", "--quiet", "--output", "d.h5")
         group, = json.loads(self.succeed("clogfit", "d.h5", "--format", "json").stdout)["groups"]
         line = next(line for line in group["families"]["lines"] if line["distance"] == 15)
         found = droplets(self.folder / "d.h5")
-        self.assertGreater(len(found), 3)
+        self.assertGreater(len(found), 6)
         leaves = found[found.status != "broken"]
-        self.assertAlmostEqual(line["passed"]["area"], (leaves[leaves.status == "passed"].diameter**2).sum() / 3)
+        self.assertAlmostEqual(line["passed"]["area"], (leaves[leaves.status == "passed"].diameter**2).sum() / 6)
         others = sum(line[name] for name in ("clogged", "small", "not_known"))
         self.assertAlmostEqual(others + line["passed"]["area"], 1)
+        picture = clogsweep.open(self.folder / "d.h5", BIN).device(ways=0, map=0)
+        self.assertIn("daughters draws their daughters", str(picture.figure.findobj(matplotlib.text.Text)))
 
     def test_python_reads_and_draws_families(self):
         sweep = clogsweep.open(self.folder / "s.h5", BIN)

@@ -13,9 +13,11 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
+#include "clog/core/tools/error.hpp"
 #include "clog/scheduler/scheduler.hpp"
 #include "support.hpp"
 
@@ -41,6 +43,9 @@ constexpr std::int64_t first_hanging_task = 10'000;
 /// Tasks with these numbers or larger ones kill or stop the helper of their process.
 constexpr std::int64_t first_task_that_kills_the_helper = 20'000;
 constexpr std::int64_t first_task_that_stops_the_helper = 30'000;
+
+/// A description that no helper can read.
+constexpr std::string_view unreadable = "unreadable jobs";
 
 /// The process of the test itself, before it forks.
 const pid_t rank_pid = getpid();
@@ -85,7 +90,8 @@ class CrashingJob final : public SyntheticJob {
 };
 
 sweep::JobFactory describe(const std::string& description) {
-  expect(description == "crashing jobs", "the description arrives");
+  if (getpid() != rank_pid && description == unreadable) throw Error("the description is unreadable");
+  expect(description == "crashing jobs" || description == unreadable, "the description arrives");
   return [](std::int64_t task, std::span<const std::byte> snapshot) {
     return std::make_unique<CrashingJob>(task, snapshot);
   };
@@ -231,9 +237,10 @@ void a_rank_goes_on_without_its_helper(const scheduler::Communicator& ranks,
 int main(int argc, char** argv) {
   scheduler::IsolatedJobs isolated(describe);
   scheduler::IsolatedJobs others(describe);
+  scheduler::IsolatedJobs without_description(describe);
   const scheduler::Communicator ranks(argc, argv);
-  const auto jobs = [](scheduler::IsolatedJobs& of) {
-    return of.jobs("crashing jobs", describe("crashing jobs"));
+  const auto jobs = [](scheduler::IsolatedJobs& of, std::string_view description = "crashing jobs") {
+    return of.jobs(std::string(description), describe(std::string(description)));
   };
   const sweep::JobFactory make_job = jobs(isolated);
   a_crash_fails_its_task_and_no_other(ranks, make_job);
@@ -241,5 +248,6 @@ int main(int argc, char** argv) {
   hanging_tasks_block_nobody(ranks, make_job);
   a_rank_goes_on_without_its_helper(ranks, make_job, first_task_that_kills_the_helper);
   a_rank_goes_on_without_its_helper(ranks, jobs(others), first_task_that_stops_the_helper);
+  a_rank_goes_on_without_its_helper(ranks, jobs(without_description, unreadable), first_slow_task);
   if (ranks.rank() == 0) std::printf("crashes cost one task each on %d ranks\n", ranks.size());
 }

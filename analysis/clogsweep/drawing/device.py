@@ -282,6 +282,11 @@ def sites(points: Numbers, reach: float) -> list[tuple[Numbers, int]]:
 ROUND_OFF = 1e-6  # of the release of a droplet
 
 
+def has_daughters(rows: Records) -> bool:
+    """Whether runs follow the daughters of droplets that break up."""
+    return "break_up" in rows.dtype.names and bool((rows["break_up"] == b"daughters").any())
+
+
 def came_past(place: Place) -> tuple[Numbers, Numbers]:
     """Places along the flow, and for each place the fraction of droplets that passed it. As in clogfit, a droplet
     counts only at places downstream of its release, and not if it was still moving towards them. Without entrance and
@@ -395,6 +400,8 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
     draw_passages(below, parts)
     below.set_xlabel(f"{place.coordinate('x')}, along gravity"
                      + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
+    if any(has_daughters(part.place.rows) for part in parts):
+        style.notes(below, ["released droplets until they break up; python3 -m clogsweep daughters draws their daughters"])
     walls = "between walls" if place.has_walls else "periodic across the flow"
     some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""
     figure.suptitle(f"{literal(place.name)}: {place.length:.4g} x {place.width:.4g} "

@@ -780,13 +780,13 @@ std::vector<Parameter> verdict_entries() {
              .scope = &polygons,
              .range = {not_negative,
                        to(0.5, "a droplet in a gap may be this narrow without breaking up", "try 0.05")}}),
-      entry(
-          "break-up", [](auto& run) -> auto& { return run.dp.break_up; },
-          {.column = "break_up",
-           .meaning =
-               "end: a run ends when its droplet breaks up; daughters: the run continues with all daughters",
-           .scope = &polygons,
-           .before = "end"}),
+      entry("break-up", [](auto& run) -> auto& { return run.dp.break_up; },
+            {.column = "break_up",
+             .meaning = "end: a run ends when its droplet breaks up; daughters: the run continues with all "
+                        "daughters, which needs "
+                        "near-wall-drag=0, side-walls=off and walls that the droplet does not wet",
+             .scope = &polygons,
+             .before = "end"}),
       entry("smallest-daughter", [](auto& run) -> auto& { return run.dp.smallest_daughter; },
             {.column = "smallest_daughter",
              .symbol = "d_0",
