@@ -2,6 +2,7 @@
 
 import fcntl
 import hashlib
+import json
 import os
 import pathlib
 import re
@@ -103,6 +104,16 @@ class ProgramTest(unittest.TestCase):
         done = self.run_program(name, *arguments, **options)
         self.assertEqual(done.returncode, 0, f"{name} {arguments}: {done.stdout}{done.stderr}")
         return done
+
+    def plan(self, *arguments):
+        """The text of a dry run without the cost, which takes ten seconds to estimate."""
+        command = [str(BIN / "clogsweep"), *map(str, arguments), "--dry-run", "--format=json"]
+        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as dry_run:
+            line = dry_run.stdout.readline()
+            dry_run.terminate()
+            said = dry_run.communicate(timeout=LONGEST)[1]
+        self.assertTrue(line, said)
+        return json.loads(line)["text"]
 
     def refuse(self, name, *arguments, words, **options):
         """Checks that the program ends with exit code 2, prints one line that contains each of the words, and writes no

@@ -261,7 +261,7 @@ class Sweep(ProgramTest):
     def test_a_dry_run_of_many_tasks_shows_the_first_and_the_last(self):
         for seeds, num_tasks in [("1..500", 1000), ("1..501", 1002), ("1..1000000", 2_000_000)]:
             with self.subTest(tasks=num_tasks):
-                printed = self.succeed("clogsweep", *QUICK, "line-tension=2,3", f"seeds={seeds}", "--dry-run").stdout
+                printed = self.plan(*QUICK, "line-tension=2,3", f"seeds={seeds}")
                 tasks = [int(line.split()[0]) for line in printed.splitlines() if line[0].isdigit()]
                 self.assertIn(f"# {num_tasks} tasks: 2 parameter sets, {num_tasks // 2} seeds each", printed)
                 if num_tasks == 1000:
@@ -306,13 +306,13 @@ class Sweep(ProgramTest):
             self.refuse("clogsweep", *QUICK, *words, words=[reason])
 
     def test_a_dry_run_within_the_box_and_the_tested_range_has_nothing_to_add(self):
-        printed = self.succeed("clogsweep", *QUICK, "--dry-run").stdout
+        printed = self.plan(*QUICK)
         self.assertNotIn("box", printed)
         self.assertNotIn("soundness", printed)
-        printed = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
+        printed = self.plan(*SMALL, "max-time=2000")
         self.assertIn("# droplets of 1 of 1 parameter set may travel farther than the length of their array ", printed)
         self.assertIn("# outside the range tested for soundness (handbook, How far to trust it): line-tension=30 ",
-                      self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
+                      self.plan(*QUICK, "line-tension=30"))
 
     def test_what_was_not_tested_is_said_once_when_the_sweep_starts(self):
         sweep = [*SMALL, "max-time=1", "line-tension=0.05,30", "seeds=1..3", "--output", "s.h5"]

@@ -248,13 +248,13 @@ class Devices(Walls):
 
     def test_droplets_that_all_start_at_one_place_are_one_droplet(self):
         self.write("posts.csv", "x,y,diameter\n2,5,0.5\n4,5,0.5\n")
-        device = ["obstacles=posts.csv", "box=6", "release=entrance", "entrance=1", "exit=6", "line-tension=1", "vertices=64", "max-time=20", "--dry-run"]
+        device = ["obstacles=posts.csv", "box=6", "release=entrance", "entrance=1", "exit=6", "line-tension=1", "vertices=64", "max-time=20"]
         for places in (["entrance-from=3.2", "entrance-to=3.2"], ["entrance-from=3,3.2", "entrance-to=3.20,4"]):
-            self.refuse("clogsweep", *device, *places, "seeds=1..2",
+            self.refuse("clogsweep", *device, *places, "seeds=1..2", "--dry-run",
                         words=["invalid seeds=1..2", "entrance-from", "whatever the seed"])
-            self.succeed("clogsweep", *device, *places, "seeds=3")
-        self.succeed("clogsweep", *device, "entrance-from=3.2", "entrance-to=3.3", "seeds=1..2")
-        self.succeed("clogsweep", *device, "seeds=1..2")
+            self.plan(*device, *places, "seeds=3")
+        self.plan(*device, "entrance-from=3.2", "entrance-to=3.3", "seeds=1..2")
+        self.plan(*device, "seeds=1..2")
 
     def test_each_line_tension_has_a_panel(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())

@@ -51,11 +51,10 @@ class Points(PointsTest):
 
     def test_dry_run_status_and_config_know_of_them(self):
         arguments = [*QUICK, "--points", "p.csv"]
-        self.assertIn("# 14 tasks: 3 parameter sets, 1 to 10 seeds each",
-                      self.succeed("clogsweep", *arguments, "--dry-run").stdout)
+        self.assertIn("# 14 tasks: 3 parameter sets, 1 to 10 seeds each", self.plan(*arguments))
         config = self.write("again.cfg", self.succeed("clogsweep", *arguments, "--print-config").stdout)
-        listed = self.succeed("clogsweep", "--config", config, "--dry-run").stdout.splitlines()
-        own = self.succeed("clogsweep", *arguments, "--dry-run").stdout.splitlines()
+        listed = self.plan("--config", config).splitlines()
+        own = self.plan(*arguments).splitlines()
         self.assertEqual(listed[:15], own[:15])
         self.sweep("s.h5", "--points", "p.csv")
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
@@ -126,7 +125,7 @@ class Points(PointsTest):
             self.refuse("clogsweep", "vertices=64", setting, "--points", "p.csv", "--output", "s.h5",
                         words=[f"point 2: invalid {setting}", f"to give {key} for some points, make it a column of the points file"])
         self.write("p.csv", "obstacle-layout,orifice,seeds,box\nrandom,,1..3,20\nchannel,0.6,,\n")
-        printed = self.succeed("clogsweep", "vertices=64", "--points", "p.csv", "--dry-run", "--output", "s.h5").stdout
+        printed = self.plan("vertices=64", "--points", "p.csv", "--output", "s.h5")
         self.assertEqual([line.split()[1] for line in printed.splitlines()[1:5]],
                          ["density", "channel", "density", "density"])
         self.write("p.csv", "model,vertices\ndp,32\nsp,\n")
@@ -160,16 +159,13 @@ class Points(PointsTest):
 
     def test_points_without_chance_have_one_run(self):
         self.write("p.csv", "obstacle-layout,orifice\nrandom,\nchannel,0.7\nwall,\n")
-        printed = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv",
-                               "--dry-run").stdout
+        printed = self.plan("vertices=64", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv")
         self.assertIn("# 14 tasks: 3 parameter sets, 1 to 12 seeds each", printed)
-        printed = self.succeed("clogsweep", "vertices=64", "max-time=1", "--seeds-per-set", 12,
-                               "obstacle-layout=channel,wall", "--dry-run").stdout
+        printed = self.plan("vertices=64", "max-time=1", "--seeds-per-set", 12, "obstacle-layout=channel,wall")
         self.assertIn("# 2 tasks: 2 parameter sets", printed)
         self.write("c.csv", "x,y\n5,5\n")
         self.write("p.csv", "obstacles,release\nc.csv,centre\nc.csv,anywhere\n")
-        printed = self.succeed("clogsweep", "vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points",
-                               "p.csv", "--dry-run").stdout
+        printed = self.plan("vertices=64", "box=10", "max-time=1", "--seeds-per-set", 12, "--points", "p.csv")
         self.assertIn("# 13 tasks: 2 parameter sets, 1 to 12 seeds each", printed)
         self.refuse("clogsweep", "vertices=64", "box=10", "--until-precision", "20%", "--points", "p.csv", "--output",
                     "s.h5", words=["no place for --until-precision (nothing is random with release=centre"])

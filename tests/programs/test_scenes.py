@@ -332,10 +332,9 @@ class OwnCircles(ProgramTest):
 
     def test_a_run_longer_than_its_circles_asks_for_a_longer_file(self):
         keys = [key for key in OWN if not key.startswith("max-time")]
-        shown_text = self.succeed("clogsweep", *keys, "release=anywhere", "max-time=500", "--dry-run")
-        self.assertIn("give a file of circles that is as long", shown_text.stdout + shown_text.stderr)
-        self.assertNotIn("boxes=",
-                         (shown_text.stdout + shown_text.stderr).split("meet the same obstacles again")[1].splitlines()[0])
+        shown_text = self.plan(*keys, "release=anywhere", "max-time=500")
+        self.assertIn("give a file of circles that is as long", shown_text)
+        self.assertNotIn("boxes=", shown_text.split("meet the same obstacles again")[1].splitlines()[0])
 
     def test_how_wide_their_array_is_has_to_be_said(self):
         self.refuse("clogsweep", "obstacles=posts.csv", "--output", "s.h5", words=["obstacles=posts.csv", "give box"])
@@ -343,8 +342,8 @@ class OwnCircles(ProgramTest):
                     words=["obstacles=posts.csv", "give box"])
         (self.folder / "posts.csv").write_text("x,y\n" + "".join(f"{i % 5 * 2},{i // 5 * 2}\n" for i in range(25)))
         wide = [*OWN, "obstacle-diameter=1.1"]
-        self.assertNotIn("bare", self.succeed("clogsweep", *wide, "--dry-run").stdout)
-        shown_text = self.succeed("clogsweep", *wide, "boxes=4", "--dry-run").stdout
+        self.assertNotIn("bare", self.plan(*wide))
+        shown_text = self.plan(*wide, "boxes=4")
         self.assertIn("obstacles=posts.csv leaves x=", shown_text)
         self.assertNotIn("leaves y=", shown_text)
 
@@ -354,7 +353,7 @@ class OwnCircles(ProgramTest):
         walls = [(0.53 * i % 16, y) for i in range(30) for y in (1, 7)] + [(1.0 + 2 * i, 0.5 * (i % 2) + y) for i in range(8) for y in (2, 3.1, 4.2, 5.3)]
         keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=4", "terminal-speed=0.1", "max-time=100", "seeds=1..12"]
         (self.folder / "walls.csv").write_text("x,y,diameter\n" + "".join(f"{x:.4f},{y},0.3\n" for x, y in walls))
-        shown_text = self.succeed("clogsweep", "obstacles=walls.csv", *keys, "--dry-run").stdout
+        shown_text = self.plan("obstacles=walls.csv", *keys)
         self.assertRegex(shown_text, r"obstacles=walls.csv leaves y=7.15 to 8.85 bare, wider than a droplet")
         self.succeed("clogsweep", "obstacles=walls.csv", *keys, "--output", "s.h5")
         rows = read_rows(self.folder / "s.h5")

@@ -206,11 +206,10 @@ class Points(ProgramTest):
     def test_a_blank_line_of_one_column_is_an_empty_cell(self):
         head, cells = "line-tension", ["0.5", "", "2", "", "3"]
         for ending in ("\n", "\r\n"):
-            blank = self.succeed("clogsweep", *QUICK, "seeds=1", "--points",
-                                 self.write("p.csv", ending.join([head, "0.5", "", "2", "3", "", ""])),
-                                 "--dry-run").stdout
-            quoted = self.succeed("clogsweep", *QUICK, "seeds=1", "--points",
-                                  self.write("p.csv", ending.join([head, "0.5", '""', "2", "3"])), "--dry-run").stdout
+            blank = self.plan(*QUICK, "seeds=1", "--points",
+                                 self.write("p.csv", ending.join([head, "0.5", "", "2", "3", "", ""])))
+            quoted = self.plan(*QUICK, "seeds=1", "--points",
+                                  self.write("p.csv", ending.join([head, "0.5", '""', "2", "3"])))
             self.assertIn("# 4 tasks: 4 parameter sets", blank)
             self.assertEqual([line for line in blank.splitlines() if not line.startswith("#")],
                              [line for line in quoted.splitlines() if not line.startswith("#")])
@@ -218,7 +217,7 @@ class Points(ProgramTest):
         self.refuse("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", "\n".join([head, *cells]) + "\n"),
                     "--dry-run", words=["point 2 and point 4", "the same run"])
         # In a table of several columns, a blank line is no row.
-        self.assertIn("# 2 tasks", self.succeed("clogsweep", *QUICK, "--points", self.write("p.csv", "line-tension,seeds\n1,1\n\n2,1\n"), "--dry-run").stdout)
+        self.assertIn("# 2 tasks", self.plan(*QUICK, "--points", self.write("p.csv", "line-tension,seeds\n1,1\n\n2,1\n")))
 
     def test_decimal_commas_with_units_are_those_of_decimal_points(self):
         self.write("lab.cfg", "diameter = 2 mm\nangle = 20 deg\nspeed = 7 mm/s\n")
@@ -226,8 +225,8 @@ class Points(ProgramTest):
         for name, text in (("point", "obstacle-diameter;seeds\n0.4mm;1\n0.8 mm;2\n1.5e3um;3\n"),
                            ("comma", "obstacle-diameter;seeds\n0,4mm;1\n0,8 mm;2\n1,5e3um;3\n")):
             self.write("p.csv", text)
-            printed[name] = self.succeed("clogsweep", "box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
-                                         "lab.cfg", "--points", "p.csv", "--dry-run").stdout.splitlines()[:4]
+            printed[name] = self.plan("box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
+                                         "lab.cfg", "--points", "p.csv").splitlines()[:4]
         self.assertEqual(printed["comma"], printed["point"])
         self.refuse("clogsweep", "box=20", "obstacle-gap=0.4", "--lab", "lab.cfg", "--points",
                     self.write("p.csv", "obstacle-diameter;seeds\n1,350mm;1\n"), "--dry-run",
