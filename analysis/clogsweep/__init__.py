@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .style import Picture
     from .tools.errors import Damaged, ProgramFailed, UserError
 
-__version__ = "1.0.0"
+__version__ = "1.1.0"
 
 __all__ = ["Clog", "Clogs", "Damaged", "Film", "Fit", "Picture", "ProgramFailed", "Run", "Sweep", "UserError", "open", "units"]
 

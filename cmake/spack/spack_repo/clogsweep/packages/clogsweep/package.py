@@ -21,6 +21,7 @@ class Clogsweep(CMakePackage):
 
     license("BSD-3-Clause")
 
+    version("1.1.0", tag="v1.1.0")
     version("1.0.0", tag="v1.0.0")
     version("0.2.0", tag="v0.2.0")
     version("main", branch="main", get_full_repo=True)  # `git describe` counts commits since the last tag
