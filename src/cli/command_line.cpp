@@ -294,11 +294,12 @@ double CommandLine::get_positive(const std::string& option) const {
   throw Error(fmt::format("invalid --{}={} (must be a positive number)", option, get(option)));
 }
 
-std::vector<double> CommandLine::get_positives(const std::string& option) const {
+std::vector<double> CommandLine::get_positives(const std::string& option, const Reworded& reworded) const {
   std::vector<double> values;
   if (!has(option)) return values;
   try {
-    for (const std::string& item : sweep::expand_values(get(option), ValueKind::number, {}))
+    const std::string text = reworded ? reworded(get(option)) : get(option);
+    for (const std::string& item : sweep::expand_values(text, ValueKind::number, {}))
       values.push_back(sweep::to_number(item));
   } catch (const Error& error) {
     throw Error(fmt::format("invalid --{}={} ({})", option, get(option), error.what()));

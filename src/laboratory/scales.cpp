@@ -130,6 +130,36 @@ Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, cons
   return texts;
 }
 
+namespace {
+
+/// The text with each number that has a unit replaced. @param convert  makes a number of a number and its
+/// unit
+template <class Convert>
+std::string without_units(const std::string& text, const Convert& convert) {
+  static const std::regex number_with_unit(
+      "[-+]?([0-9.]+(?:[eE][-+]?[0-9]+)?) *(/?(?:[A-Za-z]|\xc2\xb5|\xce\xbc)(?:[A-Za-z/^2]|\xc2\xb2)*)");
+  std::string converted;
+  const char* rest = text.data();
+  for (const std::string_view written : sweep::numbers_in(text)) {
+    std::cmatch parts;
+    if (!std::regex_match(written.data(), written.data() + written.size(), parts, number_with_unit)) continue;
+    converted.append(rest, parts[1].first);
+    rest = parts[2].second;
+    converted += convert(parts[1].str(), parts[2].str());
+  }
+  return converted.append(rest, text.data() + text.size());
+}
+
+/// @param unit  a name of a unit, or sigma. @param size  the model's unit of the quantity [SI]
+std::string in_model_unit(const std::string& number, const std::string& unit, const std::string& quantity,
+                          double size) {
+  constexpr int digits = 13;  // the number of digits of circles in a file
+  if (unit == "sigma" || unit == "/sigma^2") return number;
+  return fmt::format("{:.{}g}", to_si(number + unit, quantity) / size, digits);
+}
+
+}  // namespace
+
 std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales) {
   const sweep::Key& known = sweep::find_key(key);
   const std::map<std::string, std::pair<std::string, double>> units = {
@@ -139,28 +169,22 @@ std::string in_model_units(const std::string& key, const std::string& text, cons
       {"sqrt(sigma g)", {"speed", scales.length / scales.time}},
       {"g rho sigma^2", {"tension", scales.tension}}};
   const auto unit = units.find(known.parameter ? known.parameter->unit : "");
-  static const std::regex number_with_unit(
-      "[-+]?([0-9.]+(?:[eE][-+]?[0-9]+)?) *(/?(?:[A-Za-z]|\xc2\xb5|\xce\xbc)(?:[A-Za-z/^2]|\xc2\xb2)*)");
-  std::string converted;
-  const char* rest = text.data();
-  for (const std::string_view written : sweep::numbers_in(text)) {
-    std::cmatch parts;
-    if (!std::regex_match(written.data(), written.data() + written.size(), parts, number_with_unit)) continue;
-    const std::string number = parts[1], its_unit = parts[2];
-    converted.append(rest, parts[1].first);
-    rest = parts[2].second;
-    try {
+  try {
+    return without_units(text, [&](const std::string& number, const std::string& its_unit) {
       if (unit == units.end()) throw Error("numbers have no unit here");
-      const auto& [quantity, size] = unit->second;
-      constexpr int digits = 13;  // the number of digits of circles in a file
-      converted += its_unit == "sigma" || its_unit == "/sigma^2"
-                       ? number
-                       : fmt::format("{:.{}g}", to_si(number + its_unit, quantity) / size, digits);
-    } catch (const Error& error) {
-      throw Error(fmt::format("invalid {}={} ({})", key, text, error.what()));
-    }
+      return in_model_unit(number, its_unit, unit->second.first, unit->second.second);
+    });
+  } catch (const Error& error) {
+    throw Error(fmt::format("invalid {}={} ({})", key, text, error.what()));
   }
-  return converted.append(rest, text.data() + text.size());
+}
+
+std::string in_diameters(const std::string& text, double diameter) {
+  return without_units(text, [&](const std::string& number, const std::string& unit) {
+    if (unit != "sigma" && std::isnan(diameter))
+      throw Error(number + unit + " has a unit, but the droplet's diameter is not known; add --lab FILE");
+    return in_model_unit(number, unit, "length", diameter);
+  });
 }
 
 double line_tension_upright(const Laboratory& lab) {

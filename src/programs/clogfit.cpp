@@ -19,6 +19,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/laboratory/scales.hpp"
 #include "clog/results/distance_file.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/group_table.hpp"
@@ -96,15 +97,15 @@ void set_row_angle(const std::string& text, std::vector<results::Group>& groups)
 
 /// @throws Error if there are neither devices nor families, or if a line is behind the exit of a device,
 /// because droplets are not followed there
-void require_place_for_lines(const std::string& text, const std::vector<double>& lines,
+void require_place_for_lines(const std::string& text, const results::LinesOf& lines,
                              const std::vector<results::Group>& groups) {
   bool is_any = false;
   for (const results::Group& group : groups) {
     const RunParameters& run = group.first_row.parameters;
-    is_any = is_any || group.families.num_ancestors > 0;
+    is_any = is_any || (run.model == Model::dp && run.dp.break_up == BreakUp::daughters);
     if (!results::is_device(run)) continue;
     is_any = true;
-    const double exit = run.obstacles.exit, last = std::ranges::max(lines);
+    const double exit = run.obstacles.exit, last = std::ranges::max(lines(group.first_row));
     if (exit > 0 && last > exit)
       throw Error(fmt::format(
           "invalid --lines={} ({} is behind the exit at x = {}, where runs end) give lines up to the exit{}",
@@ -114,6 +115,20 @@ void require_place_for_lines(const std::string& text, const std::vector<double>&
   if (!is_any)
     throw Error(
         "no place for --lines (no run has release=entrance, an exit or break-up=daughters); leave it out");
+}
+
+/// The lines of --lines. Lines in mm are at other places for droplets of other sizes.
+results::LinesOf lines_of(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows) {
+  if (!line.has("lines")) return {};
+  return [&line, scales = scales_of_rows(line, rows)](const sweep::RunRow& row) {
+    const std::optional<LaboratoryText>& own = row.parameters.laboratory;
+    const auto scale = scales.find(line.has("lab") || !own ? "" : own->check_sum());
+    constexpr double milli = 1e-3;
+    const double diameter =
+        scale == scales.end() ? std::numeric_limits<double>::quiet_NaN() : milli * scale->second.length;
+    return line.get_positives(
+        "lines", [diameter](const std::string& text) { return laboratory::in_diameters(text, diameter); });
+  };
 }
 
 int clogfit(int argc, const char* const* argv) {
@@ -132,8 +147,7 @@ int clogfit(int argc, const char* const* argv) {
           "join groups that differ only in these keys: max-time, boxes, or both with a comma between them")
       .option("lines",
               "x1,x2,...: lines at which droplets that passed are counted: across a device (by default at "
-              "every row "
-              "of posts), and for daughters beside 10, 20, 50, 100, ... [sigma]")
+              "every row of posts), and for daughters beside 10, 20, 50, 100, ... [sigma, or as in 60mm]")
       .option("row-angle", "tilt of the rows of user-supplied circles from the flow towards +y [degrees]")
       .option("dwell", "droplets that rest for this time count as clogged [t0]")
       .option("mixture",
@@ -164,7 +178,7 @@ int clogfit(int argc, const char* const* argv) {
           option));
   const std::vector<const sweep::Column*> pooled =
       line.has("pool") ? results::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
-  const std::vector<double> lines = line.get_positives("lines");
+  const results::LinesOf lines = lines_of(line, sweep.rows);
   std::vector<results::Group> groups =
       results::group_runs(sweep.rows, confidence, from_distance, dwell, pooled, lines);
   if (line.has("lines")) require_place_for_lines(line.get("lines"), lines, groups);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <random>
 #include <string>
 
@@ -105,6 +106,16 @@ std::vector<double> lines_up_to(double farthest, std::span<const double> more_li
   return lines;
 }
 
+/// Number of droplets of each family that pass a line.
+std::vector<int> numbers_at(double distance, const std::vector<Tree>& trees) {
+  std::vector<int> numbers;
+  for (const Tree& tree : trees) {
+    numbers.push_back(0);
+    tree.at_line(distance, [&](const Member&, bool passes) { numbers.back() += passes; });
+  }
+  return numbers;
+}
+
 /// Product-limit estimates at the lines.
 /// @param leaves  of all families
 /// @param times  number of times that each family counts
@@ -117,6 +128,7 @@ class ProductLimit {
     std::ranges::sort(steps_, {}, &Step::reach);
   }
 
+  /// Shares that pass the lines. Beyond the last droplet the share stays as it is.
   std::vector<double> at(const std::vector<double>& lines, const std::vector<int>& times) const {
     double at_risk = 0;
     for (const Step& step : steps_) at_risk += times[step.family] * step.area;
@@ -134,6 +146,9 @@ class ProductLimit {
     return passing;
   }
 
+  /// Place of the last droplet [sigma].
+  double last() const { return steps_.back().reach; }
+
  private:
   struct Step {
     double reach, area;
@@ -143,27 +158,68 @@ class ProductLimit {
   std::vector<Step> steps_;
 };
 
-/// Percentiles of resampled ancestors. NaN for a single ancestor, and if all resamples give one value.
-void set_intervals(const ProductLimit& estimator, std::size_t num_families, double confidence,
-                   const std::vector<double>& distances, std::vector<FamilyLine>& lines) {
+/// Percentiles of resampled values. NaN if there are too few of them.
+fit::Interval percentiles(std::vector<double> values, double confidence) {
+  std::ranges::sort(values);
+  const double last = static_cast<double>(values.size()) - 1, tail = (1 - confidence) / 2 * last;
+  if (tail < 1) return {no_number, no_number};
+  return {values[static_cast<std::size_t>(tail)], values[static_cast<std::size_t>(std::ceil(last - tail))]};
+}
+
+/// Interval of a share that is 0 or 1 in all of some number of families, by Clopper and Pearson.
+fit::Interval without_variation(double share, int num_families, double confidence) {
+  if (num_families == 0) return {no_number, no_number};
+  const double certain = std::pow((1 - confidence) / 2, 1.0 / num_families);
+  return share == 0 ? fit::Interval{0, 1 - certain} : fit::Interval{certain, 1};
+}
+
+/// Number of families of which all area passes a line, or of which all area ends before it.
+int num_alike(const std::vector<std::vector<Leaf>>& leaves, double distance, bool pass) {
+  return static_cast<int>(std::ranges::count_if(leaves, [&](const std::vector<Leaf>& family) {
+    return std::ranges::all_of(family, [&](const Leaf& leaf) {
+      const bool has_passed = leaf.reach >= distance - round_off;
+      return pass ? has_passed : !has_passed && leaf.has_stopped();
+    });
+  }));
+}
+
+/// Sets shares that pass, and intervals from resampled ancestors.
+void set_estimates(const std::vector<Tree>& trees, const std::vector<std::vector<Leaf>>& leaves,
+                   double confidence, const std::vector<double>& distances, std::vector<FamilyLine>& lines) {
   constexpr int num_resamples = 2000;
+  const ProductLimit estimator(leaves);
+  const std::size_t num_families = trees.size();
+  const std::vector<double> passing = estimator.at(distances, std::vector<int>(num_families, 1));
   std::seed_seq sequence{std::uint32_t{0x66616d69}};  // fixed, so that the output is reproducible
   boost::random::mt19937_64 engine(sequence);
   boost::random::uniform_int_distribution<std::size_t> draw(0, num_families - 1);
-  std::vector<std::vector<double>> drawn(lines.size());
+  std::vector<std::vector<double>> shares(lines.size()), numbers(lines.size());
+  std::vector<std::vector<int>> counts;
+  for (const double distance : distances) counts.push_back(numbers_at(distance, trees));
   for (int i = 0; i < num_resamples; ++i) {
     std::vector<int> times(num_families);
     for (std::size_t j = 0; j < num_families; ++j) ++times[draw(engine)];
-    const std::vector<double> passing = estimator.at(distances, times);
-    for (std::size_t line = 0; line < lines.size(); ++line) drawn[line].push_back(passing[line]);
+    const std::vector<double> drawn = estimator.at(distances, times);
+    for (std::size_t line = 0; line < lines.size(); ++line) {
+      shares[line].push_back(drawn[line]);
+      numbers[line].push_back(std::inner_product(times.begin(), times.end(), counts[line].begin(), 0.0) /
+                              static_cast<double>(num_families));
+    }
   }
-  const double last = num_resamples - 1, tail = (1 - confidence) / 2 * last;
-  for (std::size_t line = 0; line < lines.size(); ++line) {
-    std::vector<double>& values = drawn[line];
-    std::ranges::sort(values);
-    const bool is_known = tail >= 1 && values.front() < values.back();
-    lines[line].interval = {is_known ? values[static_cast<std::size_t>(tail)] : no_number,
-                            is_known ? values[static_cast<std::size_t>(std::ceil(last - tail))] : no_number};
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool is_known = passing[i] == 0 || distances[i] <= estimator.last() + round_off;
+    const fit::Interval unknown{no_number, no_number};
+    FamilyLine& line = lines[i];
+    line.passing = is_known ? passing[i] : no_number;
+    const auto [fewest, most] = std::ranges::minmax(counts[i]);
+    line.passed.number_interval = is_known && fewest < most ? percentiles(numbers[i], confidence) : unknown;
+    if (!is_known)
+      line.interval = unknown;
+    else if (passing[i] == 0 || passing[i] == 1)
+      line.interval =
+          without_variation(passing[i], num_alike(leaves, distances[i], passing[i] == 1), confidence);
+    else
+      line.interval = num_families > 1 ? percentiles(shares[i], confidence) : unknown;
   }
 }
 
@@ -211,10 +267,7 @@ Families families_of(std::span<const ReleasedFamily> families, double confidence
   make_means(found.clogged, num_ancestors);
   const std::vector<double> distances = lines_up_to(farthest, more_lines);
   for (const double distance : distances) found.lines.push_back(line_at(distance, trees));
-  const ProductLimit estimator(leaves);
-  const std::vector<double> passing = estimator.at(distances, std::vector<int>(families.size(), 1));
-  for (std::size_t i = 0; i < passing.size(); ++i) found.lines[i].passing = passing[i];
-  set_intervals(estimator, families.size(), confidence, distances, found.lines);
+  set_estimates(trees, leaves, confidence, distances, found.lines);
   return found;
 }
 

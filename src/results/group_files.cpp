@@ -70,15 +70,19 @@ Json diameters_json(const Diameters& all) {
 /// Numbers and areas per ancestor.
 Json families_json(const Families& families) {
   Json lines = Json::array();
-  for (const FamilyLine& line : families.lines)
+  for (const FamilyLine& line : families.lines) {
+    Json passed = diameters_json(line.passed);
+    passed["number_lower"] = json_of(Value(line.passed.number_interval.lower));
+    passed["number_upper"] = json_of(Value(line.passed.number_interval.upper));
     lines.push_back({{"distance", line.distance},
-                     {"passed", diameters_json(line.passed)},
+                     {"passed", std::move(passed)},
                      {"clogged", line.clogged},
                      {"small", line.small},
                      {"not_known", line.not_known},
-                     {"passing", line.passing},
+                     {"passing", json_of(Value(line.passing))},
                      {"passing_lower", json_of(Value(line.interval.lower))},
                      {"passing_upper", json_of(Value(line.interval.upper))}});
+  }
   return {{"ancestors", families.num_ancestors},
           {"daughters", families.num_daughters},
           {"diameter_class", diameter_class},

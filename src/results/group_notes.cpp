@@ -46,8 +46,11 @@ std::string column_notes(const std::vector<Group>& groups) {
         "lambda_b\n";
   if (std::ranges::any_of(groups, [](const Group& group) { return group.families.num_ancestors > 0; }))
     text +=
-        "daughters: lambda, lambda_b and clogs count the released droplets only; --dwell and --from-distance "
-        "do not change the table of daughters\n";
+        "daughters: only the table with droplets per ancestor counts them. lambda, lambda_b, clogs and "
+        "droplets "
+        "that came past x are of released droplets until they break up. --dwell and --from-distance do not "
+        "change "
+        "the table of daughters\n";
   if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
         "passed: droplets that reached the exit. They count as not clogged up to there, so lambda may "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -318,25 +319,44 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
                      console::aligned(lines));
 }
 
+std::string or_dash(double number) { return std::isnan(number) ? "-" : fmt::format("{:.2f}", number); }
+
+std::string or_dash(const fit::Interval& interval) {
+  if (std::isnan(interval.lower)) return "-";
+  return fmt::format("{:.2f} .. {:.2f}", interval.lower, interval.upper);
+}
+
+/// The droplet's diameter in the laboratory; NaN if it is unknown [mm].
+double length_of(const Group& group) {
+  return group.laboratory ? group.laboratory->length : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// What became of the ancestors' area at some lines, with break-up=daughters.
 std::string table_of_families(const std::vector<Group>& groups, const std::vector<ResultColumn>& parameters,
                               double confidence) {
+  const bool has_lengths =
+      std::ranges::any_of(groups, [](const Group& group) { return length_of(group) > 0; });
+  const std::string level = fmt::format("{:g} %", 100 * confidence);
   std::vector<std::vector<std::string>> lines = {heads(parameters)};
-  for (const char* name :
-       {"x/sigma", "droplets", "mean d", "passed", "clogged", "small", "not known", "passing"})
-    lines[0].emplace_back(name);
-  lines[0].push_back(fmt::format("{:g} %", 100 * confidence));
+  std::vector<std::string>& head = lines[0];
+  head.emplace_back("x/sigma");
+  if (has_lengths) head.emplace_back("x/mm");
+  head.insert(head.end(), {"droplets", level, "mean d"});
+  if (has_lengths) head.emplace_back("mean d/mm");
+  head.insert(head.end(), {"passed", "clogged", "small", "not known", "passing", level});
   for (const Group& group : groups)
     for (const FamilyLine& line : group.families.lines) {
       std::vector<std::string>& words = lines.emplace_back(cells(group, parameters));
       words.push_back(fmt::format("{:g}", line.distance));
-      words.push_back(fmt::format("{:.2f}", line.passed.number));
-      words.push_back(std::isnan(line.passed.mean) ? "-" : fmt::format("{:.2f}", line.passed.mean));
+      if (has_lengths)
+        words.push_back(length_of(group) > 0 ? fmt::format("{:.4g}", line.distance * length_of(group)) : "-");
+      words.push_back(or_dash(line.passed.number));
+      words.push_back(or_dash(line.passed.number_interval));
+      words.push_back(or_dash(line.passed.mean));
+      if (has_lengths) words.push_back(or_dash(line.passed.mean * length_of(group)));
       for (const double area : {line.passed.area, line.clogged, line.small, line.not_known, line.passing})
-        words.push_back(fmt::format("{:.2f}", area));
-      words.push_back(std::isnan(line.interval.lower)
-                          ? "-"
-                          : fmt::format("{:.2f} .. {:.2f}", line.interval.lower, line.interval.upper));
+        words.push_back(or_dash(area));
+      words.push_back(or_dash(line.interval));
     }
   if (lines.size() == 1) return "";
   return fmt::format(

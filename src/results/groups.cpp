@@ -360,7 +360,7 @@ static Families families_of(const std::vector<const sweep::RunRow*>& runs, doubl
 
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance,
                               double dwell, std::span<const sweep::Column* const> pooled,
-                              std::span<const double> lines) {
+                              const LinesOf& lines) {
   require_dwells(rows, dwell);
   std::vector<Group> groups;
   for (auto& [values, runs] : members_of_groups(rows, pooled)) {
@@ -375,8 +375,9 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     fit_clogging(group, tally.endings, confidence, from_distance);
     group.are_runs_equal = fit::are_mostly_equal(tally.clogs.empty() ? tally.others : tally.clogs);
     fit_meetings(group, tally.meetings, confidence);
-    if (is_device(run)) group.passages = passages_of(run, tally.arrivals, lines, confidence);
-    group.families = families_of(runs, confidence, lines);
+    const std::vector<double> own_lines = lines ? lines(group.first_row) : std::vector<double>();
+    if (is_device(run)) group.passages = passages_of(run, tally.arrivals, own_lines, confidence);
+    group.families = families_of(runs, confidence, own_lines);
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(tally.speeds));
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(tally.travels));
     group.relative_speed_all = mean_speed_of_all(tally.travels_until_arrest, run.drag.terminal_speed);

@@ -1,5 +1,7 @@
 #include "droplets.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -12,8 +14,6 @@
 
 namespace clog::store {
 namespace {
-
-constexpr const char* sum_name = "checksum";
 
 /// One line of the table.
 struct Line {
@@ -97,22 +97,20 @@ std::optional<Member> member_of(const Line& line) {
                 .mechanism = *mechanism};
 }
 
-std::string check_sum_of(std::span<const Line> lines) {
-  return std::to_string(check_sum(std::as_bytes(lines)));
-}
+std::uint32_t check_sum_of(const Line& line) { return check_sum(std::as_bytes(std::span(&line, 1))); }
 
-/// The lines of the table; nullopt if they are not as they were written.
-std::optional<std::vector<Line>> read_lines(hid_t file) {
-  const Dataset table(H5Dopen2(file, droplets_name, H5P_DEFAULT));
-  if (!table.valid()) return std::nullopt;
-  const Type type = line_type();
-  const hsize_t size = length_of(table).value_or(0);
-  if (H5Tequal(Type(H5Dget_type(table)), type) <= 0 || !can_hold(table, size, sizeof(Line)))
+/// All values of a dataset of this type, whose checksums are not compared; nullopt if it cannot be read.
+template <class T>
+std::optional<std::vector<T>> read_all(hid_t file, const char* name, hid_t type) {
+  const Dataset dataset(H5Lexists(file, name, H5P_DEFAULT) > 0 ? H5Dopen2(file, name, H5P_DEFAULT)
+                                                               : hid_t{-1});
+  if (!dataset.valid() || H5Tequal(Type(H5Dget_type(dataset)), type) <= 0) return std::nullopt;
+  const hsize_t size = length_of(dataset).value_or(0);
+  if (!can_hold(dataset, size, sizeof(T))) return std::nullopt;
+  std::vector<T> values(size);
+  if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, without_library_check(), values.data()) < 0)
     return std::nullopt;
-  std::vector<Line> lines(size);
-  if (H5Dread(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, lines.data()) < 0) return std::nullopt;
-  if (read_attribute(table, sum_name) != check_sum_of(lines)) return std::nullopt;
-  return lines;
+  return values;
 }
 
 }  // namespace
@@ -128,19 +126,30 @@ void write_droplets(hid_t file, std::span<const StoredFamily> families) {
                     checked_chunks(std::min<hsize_t>(lines_per_chunk, lines.size())));
   write_attribute(table, "task", "task of the ancestor in /runs");
   for (const LineColumn& column : columns) write_attribute(table, column.name, column.meaning);
-  write_attribute(table, sum_name, check_sum_of(lines));
+  std::vector<std::uint32_t> sums;
+  for (const Line& line : lines) sums.push_back(check_sum_of(line));
+  const Dataset list =
+      write_dataset(file, droplet_sums_name, H5T_NATIVE_UINT32, space_of({sums.size()}), sums.data(),
+                    checked_chunks(std::min<hsize_t>(lines_per_chunk, sums.size())));
+  write_attribute(list, "meaning", "CRC-32, as of zlib, of the bytes of each row of /droplets");
 }
 
 void read_droplets(hid_t file, std::vector<sweep::RunRow>& rows, std::vector<std::string>& damage) {
   if (H5Lexists(file, droplets_name, H5P_DEFAULT) <= 0) return;
-  const std::optional<std::vector<Line>> lines = read_lines(file);
-  if (!lines) {
+  const auto lines = read_all<Line>(file, droplets_name, line_type());
+  const auto sums = read_all<std::uint32_t>(file, droplet_sums_name, H5T_NATIVE_UINT32);
+  if (!lines || !sums || lines->size() != sums->size()) {
     damage.emplace_back("its droplets are not as they were written");
     return;
   }
   std::unordered_map<std::int64_t, sweep::RunRow*> by_task;
   for (sweep::RunRow& row : rows) by_task.emplace(row.task, &row);
-  for (const Line& line : *lines) {
+  for (std::size_t i = 0; i < lines->size(); ++i) {
+    const Line& line = (*lines)[i];
+    if (check_sum_of(line) != (*sums)[i]) {
+      damage.push_back(fmt::format("droplet {} (task {}) is not as it was written", i, line.task));
+      continue;
+    }
     const auto row = by_task.find(line.task);
     const std::optional<Member> member = member_of(line);
     if (row != by_task.end() && member) row->second->family.push_back(*member);

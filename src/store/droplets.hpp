@@ -12,6 +12,7 @@
 namespace clog::store {
 
 inline constexpr const char* droplets_name = "droplets";
+inline constexpr const char* droplet_sums_name = "droplet_checksums";
 
 /// A family, and the task of its row.
 struct StoredFamily {
@@ -22,8 +23,9 @@ struct StoredFamily {
 /// Writes no table if there is no family. @throws LibraryError
 void write_droplets(hid_t file, std::span<const StoredFamily> families);
 
-/// Assigns the families to the rows. If the table is not as it was written, appends a sentence to `damage`,
-/// and assigns no family.
+/// Assigns the families to the rows, without droplets that are not as they were written. Appends a sentence
+/// for each of these to `damage`, or one if the table cannot be read. A family that lacks a droplet is a
+/// fault of its row (sweep::fault_of).
 void read_droplets(hid_t file, std::vector<sweep::RunRow>& rows, std::vector<std::string>& damage);
 
 }  // namespace clog::store

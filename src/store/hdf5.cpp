@@ -126,6 +126,12 @@ Space space_of(std::initializer_list<hsize_t> shape) {
   return Space(H5Screate_simple(static_cast<int>(shape.size()), std::data(shape), nullptr));
 }
 
+PropertyList without_library_check() {
+  PropertyList properties(H5Pcreate(H5P_DATASET_XFER));
+  H5Pset_edc_check(properties, H5Z_DISABLE_EDC);
+  return properties;
+}
+
 PropertyList checked_chunks(hsize_t num_rows) {
   PropertyList properties(H5Pcreate(H5P_DATASET_CREATE));
   H5Pset_chunk(properties, 1, &num_rows);

@@ -79,6 +79,9 @@ File open_image(std::vector<std::byte>& image, const std::string& path);
 Space space_of(std::initializer_list<hsize_t> shape);
 /// Chunks of this many rows. They have checksums, with which other programs detect damage.
 PropertyList checked_chunks(hsize_t num_rows);
+/// For reading without the library's check. Our checksums identify damaged rows, so the library should return
+/// all data.
+PropertyList without_library_check();
 /// Creates and fills a dataset; attributes can be added to the result. @throws LibraryError
 /// @param data  nullptr: the data are written later
 Dataset write_dataset(hid_t parent, const std::string& name, hid_t type, hid_t space, const void* data,

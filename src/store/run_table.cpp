@@ -181,13 +181,6 @@ std::size_t num_rows_of(hid_t dataset, std::size_t bytes_each) {
   return *number;
 }
 
-/// Turns off the library's check. Our checksums identify damaged rows, so the library should return all data.
-PropertyList without_library_check() {
-  PropertyList properties(H5Pcreate(H5P_DATASET_XFER));
-  H5Pset_edc_check(properties, H5Z_DISABLE_EDC);
-  return properties;
-}
-
 CheckSums read_check_sums(hid_t file, std::size_t num_rows) {
   const Dataset dataset(H5Lexists(file, sums_name, H5P_DEFAULT) > 0 ? H5Dopen2(file, sums_name, H5P_DEFAULT)
                                                                     : hid_t{-1});
@@ -243,6 +236,7 @@ CheckSums read_rows(hid_t file, Examination& found) {
 
 /// Whether the library refuses a dataset when it compares its own checksums.
 bool is_refused(hid_t file, const char* name) {
+  if (H5Lexists(file, name, H5P_DEFAULT) <= 0) return false;
   const Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
   const Type type(H5Dget_type(dataset));
   const std::size_t length = length_of(dataset).value_or(0);
@@ -266,7 +260,8 @@ void add_attributes(hid_t object, const std::string& name, const std::set<std::s
 /// Objects and attributes that other programs have added. In the groups of circles and laboratories they
 /// count as damage instead.
 std::vector<std::string> foreign_objects(hid_t file) {
-  const std::set<std::string> known = {runs_name, sums_name, circles_name, laboratories_name, droplets_name};
+  const std::set<std::string> known = {runs_name,         sums_name,     circles_name,
+                                       laboratories_name, droplets_name, droplet_sums_name};
   std::vector<std::string> foreign;
   for (const std::string& name : names_in(file))
     if (!known.contains(name)) foreign.push_back('/' + name);
@@ -295,7 +290,9 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   read_droplets(file, found.whole.rows, found.damage);
   read_laboratories(file, found.damage);
   if (seal != Seal::whole)
-    found.is_refused_by_others = is_refused(file, runs_name) || is_refused(file, sums_name);
+    found.is_refused_by_others =
+        std::ranges::any_of(std::array{runs_name, sums_name, droplets_name, droplet_sums_name},
+                            [&](const char* name) { return is_refused(file, name); });
   adopt_laboratory_of_all(found.whole);
   if (seal != Seal::whole) found.whole.foreign = foreign_objects(file);
   for (const char* ours : {"kind", "format_version", num_columns_name})

@@ -96,7 +96,7 @@ class Families(SweepTest, Analysis):
             lines = file["droplets"][:]
             lines["end_distance"][lines["path"] == b"0"] += 1e-9
             file["droplets"][:] = lines
-            file["droplets"].attrs["checksum"] = np.bytes_(str(stored_rows.zlib.crc32(lines.tobytes())))
+            file["droplet_checksums"][:] = [stored_rows.zlib.crc32(line.tobytes()) for line in lines]
 
         stored_rows.edited(self.folder / "s.h5", change)
         for more in ([], ["--droplet", "0"]):
@@ -127,6 +127,22 @@ class Families(SweepTest, Analysis):
         self.assertEqual(self.run_program("clogfit", "s.h5").returncode, 2)
         self.succeed("clogsweep", "salvage", "s.h5", "--output", "kept.h5")
         self.succeed("clogsweep", *FAMILIES, "--output", "kept.h5")
+        self.copy_sweep("whole.h5", *FAMILIES)
+        self.check_equal("kept.h5", "whole.h5")
+
+    def test_a_changed_number_costs_its_family_only(self):
+        def change(file):
+            lines = file["droplets"][:]
+            lines["end_time"][np.flatnonzero(lines["task"] == 1)[-1]] *= 1 + 1e-12
+            file["droplets"][:] = lines
+
+        stored_rows.edited(self.folder / "s.h5", change)
+        said = self.run_program("clogsweep", "verify", "s.h5").stdout
+        self.assertRegex(said, r"droplet \d+ \(task 1\) is not as it was written")
+        self.assertIn("3 undamaged rows", said)
+        self.succeed("clogsweep", "salvage", "s.h5", "--output", "kept.h5")
+        self.assertEqual(set(droplets(self.folder / "kept.h5").task), {0, 2, 3})
+        self.assertIn("4 runs", self.succeed("clogsweep", *FAMILIES, "--output", "kept.h5").stderr)
         self.copy_sweep("whole.h5", *FAMILIES)
         self.check_equal("kept.h5", "whole.h5")
 
@@ -184,7 +200,7 @@ class Families(SweepTest, Analysis):
                                           check_exact=True)
 
     def test_the_table_says_which_droplets_its_lengths_count(self):
-        self.assertIn("daughters: lambda, lambda_b and clogs count the released droplets only",
+        self.assertIn("daughters: only the table with droplets per ancestor counts them",
                       self.succeed("clogfit", "s.h5").stdout)
 
     def test_the_fit_accounts_for_the_whole_area(self):

@@ -99,6 +99,28 @@ TEST(Families, AreCountedAtMoreLinesAndFromTheRelease) {
   EXPECT_EQ(in_device.lines[1].passed.number, 1) << "the ancestor broke up at 19";
 }
 
+TEST(Families, AtALineBeyondAllDropletsAreUnknownUnlessAllEnded) {
+  const std::vector<double> far = {1000};
+  const std::vector<ReleasedFamily> moving = {{{member("", 1, 0, 30, MemberEnd::flowing)}},
+                                              {{member("", 1, 0, 40, MemberEnd::flowing)}}};
+  FamilyLine line = families_of(moving, 0.95, far).lines.back();
+  EXPECT_EQ(line.not_known, 1);
+  EXPECT_TRUE(std::isnan(line.passing) && std::isnan(line.interval.upper)) << line.passing;
+  const std::vector<ReleasedFamily> clogged = {{{member("", 1, 0, 30, MemberEnd::clogged)}},
+                                               {{member("", 1, 0, 40, MemberEnd::clogged)}}};
+  line = families_of(clogged, 0.95, far).lines.back();
+  EXPECT_EQ(line.passing, 0);
+  EXPECT_NEAR(line.interval.upper, 1 - std::sqrt(0.025), 1e-12) << "none of two, by Clopper and Pearson";
+}
+
+TEST(Families, ThatAllPassHaveTheLowerBoundOfABinomialShare) {
+  std::vector<ReleasedFamily> families(12, {{member("", 1, 0, 30, MemberEnd::flowing)}});
+  const FamilyLine line = families_of(families, 0.95).lines.front();
+  EXPECT_EQ(line.passing, 1);
+  EXPECT_NEAR(line.interval.lower, 0.735, 5e-4) << "12 of 12 in tables of Clopper and Pearson";
+  EXPECT_TRUE(std::isnan(line.passed.number_interval.lower)) << "all have one droplet";
+}
+
 TEST(Families, OfOneAncestorHaveNoInterval) {
   const std::vector<ReleasedFamily> families = {{family()}};
   EXPECT_TRUE(std::isnan(families_of(families, 0.95).lines.back().interval.lower));

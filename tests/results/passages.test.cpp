@@ -77,8 +77,8 @@ TEST(Passages, AreThoseOfEachRowOfPostsAndOfTheExit) {
 
 TEST(Passages, AreThoseOfTheUsersLines) {
   const std::vector<double> lines = {2, 4.5};
-  const std::vector<Group> groups =
-      group_runs(five_rows(), 0.95, 0, std::numeric_limits<double>::infinity(), {}, lines);
+  const std::vector<Group> groups = group_runs(five_rows(), 0.95, 0, std::numeric_limits<double>::infinity(),
+                                               {}, [&](const sweep::RunRow&) { return lines; });
   expect_passages(groups[0], {{2, 5, 0}, {4.5, 4, 1}, {device_exit, 2, 2}});
 }
 

@@ -40,6 +40,9 @@ Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, cons
 /// @param text  numbers without a unit, and those in sigma, keep their values
 /// @throws Error that names the key, if one of its numbers has another unit than the key can have
 std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales);
+/// A list of lengths with its numbers in droplet diameters. @param diameter  of the droplet; NaN: unknown [m]
+/// @throws Error without a name of the list
+std::string in_diameters(const std::string& text, double diameter);
 
 /// The sag: the distance by which the centroid of a droplet sinks on a flat wall that it does not wet
 /// [sigma]. It follows from the two-dimensional Young-Laplace equation. NaN for Gamma below 1e-3 and above

@@ -16,9 +16,11 @@ inline constexpr std::size_t num_diameter_classes = 20;
 
 /// The droplets of some families, counted by relative diameter; per ancestor.
 struct Diameters {
-  double number = 0;  ///< droplets per ancestor
-  double area = 0;    ///< area of these droplets, divided by the area of the ancestors
-  double mean = 0;    ///< mean diameter of the droplets; NaN without any
+  double number = 0;                ///< droplets per ancestor
+  fit::Interval number_interval{};  ///< at a line, from resampled ancestors; NaN if it is unknown, or if all
+                                    ///< have equal numbers
+  double area = 0;  ///< area of these droplets, divided by the area of the ancestors
+  double mean = 0;  ///< mean diameter of the droplets; NaN without any
   /// Numbers and areas by class. Class i contains the diameters from i * diameter_class to (i + 1) *
   /// diameter_class; the last class also contains the diameter 1.
   std::array<double, num_diameter_classes> numbers{}, areas{};
@@ -39,8 +41,10 @@ struct FamilyLine {
   /// small to be followed, and of droplets that were still moving or failed. The four areas add up to 1.
   double clogged = 0, small = 0, not_known = 0;
   /// Share of the area that passes the line, by the product-limit estimator of Kaplan and Meier with areas as
-  /// weights. The droplets in `not_known` count as censored where they were last seen. The interval is from
-  /// resampled ancestors; NaN if it is unknown.
+  /// weights. The droplets in `not_known` count as censored where they were last seen. NaN if no droplet was
+  /// followed to the line, and not all have ended before it. The interval is from resampled ancestors. If all
+  /// area passes, or none, its other end is that of a binomial share, as if each ancestor whose fate is known
+  /// passed whole or not at all. NaN if it is unknown.
   double passing = 0;
   fit::Interval interval{};
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -152,6 +153,8 @@ bool is_observed(const sweep::RunRow& run);
 /// is nullopt if the droplet met no obstacle.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
+using LinesOf = std::function<std::vector<double>(const sweep::RunRow&)>;
+
 /// Groups rows by all parameters except the seed. The groups are in the order of their findings, then of
 /// their parameters. Runs count as in observation_of().
 /// @param from_distance  the distance from which on runs are observed [sigma]. Runs that ended earlier are
@@ -162,14 +165,13 @@ std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 /// @param pooled  columns of max-time and boxes that do not separate groups. If several runs have equal seeds
 /// and arrays, only the run with the largest max-time counts. Runs with different `boxes` all count, because
 /// equal seeds then give different arrays.
-/// @param lines  x of the passages in devices, by default those of the rows of posts; also lines for families
-/// [sigma]
+/// @param lines  for a group's first row, x of the passages in devices (by default those of the rows of
+/// posts), and lines for families [sigma]
 /// @throws Error if the rows do not record which droplets rested for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0,
                               double dwell = std::numeric_limits<double>::infinity(),
-                              std::span<const sweep::Column* const> pooled = {},
-                              std::span<const double> lines = {});
+                              std::span<const sweep::Column* const> pooled = {}, const LinesOf& lines = {});
 /// The columns of a list of keys, which may be max-time, boxes or both: `max-time,boxes`. @throws Error for
 /// any other key
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
