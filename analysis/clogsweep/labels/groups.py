@@ -256,10 +256,6 @@ class Groups:
         return [(self._label(dict(zip(names, key))),
                  [group for group in self.members if tuple(group[name] for name in names) == key]) for key in keys]
 
-    def legend_title(self) -> str:
-        """The names of the parameters whose values are in the labels of curves()."""
-        return ", ".join(name.replace("_", " ") for name in self.curve_parameters() if self._is_number(name) and name not in fits.DROPLETS)
-
     def is_logarithmic(self) -> bool:
         values = self.values(self.abscissa)
         return None not in values and min(values) > 0 and (self.abscissa in AXES or max(values) > 5 * min(values))
