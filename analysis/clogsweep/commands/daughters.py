@@ -72,7 +72,8 @@ def body() -> int:
         place = None
         if arguments.outlet is not None:
             families.with_families(groups, arguments.sweep)  # refuses a sweep without families
-            place = families.in_sigma(*arguments.outlet, groups)
+            distance, unit = arguments.outlet
+            place = families.in_sigma(distance, unit, groups)
             fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{place:.17g}"))
             groups = fit.known.finished(arguments.sweep)
         figure = families.draw(groups, place, arguments.sweep)

@@ -67,6 +67,12 @@ def outlet_of(members: Sequence[Group], asked: float | None) -> float:
     return max(filter(is_known, known), default=known[0])
 
 
+def fate_note(outlet: float, unknown: float) -> str:
+    """@param unknown  largest fraction of the area whose fate at the outlet is not known"""
+    of_area = f"at most {100 * unknown:.2g} % of the area is not known" if unknown > 0 else "the whole area is known"
+    return f"at {outlet:g}σ the fate of {of_area}"
+
+
 def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
     """@param asked  the outlet, or None for the farthest line at which most of the area is known"""
     members = with_families(groups, source)
@@ -75,10 +81,14 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
     grid = figure.add_gridspec(2, 2)
     share, number, sizes = (figure.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, :]))
     width = members[0]["families"]["diameter_class"]
+    # Droplets of several diameters have no common sigma, so all axes are in mm.
+    scales = [group["diameter_mm"] if groups.are_in_mm else 1.0 for group in members]
+    known = sorted({line["distance"] * scale for group, scale in zip(members, scales)
+                    for line in group["families"]["lines"]})
     for index, (group, colour) in enumerate(zip(members, style.shades(len(members)))):
         label = groups.label_of(group)
         lines = group["families"]["lines"]
-        places = [line["distance"] for line in lines]
+        places = [line["distance"] * scales[index] for line in lines]
         passing = np.array([line["passing"] for line in lines])
         ends = [[passing[i] if line[name] is None else line[name] for i, line in enumerate(lines)]
                 for name in ("passing_lower", "passing_upper")]
@@ -86,24 +96,25 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
         marker = style.MARKERS[index % len(style.MARKERS)]
         share.errorbar(shifted, passing, yerr=np.abs(np.array(ends) - passing), color=colour, marker=marker, capsize=2)
         number.plot(places, [line["passed"]["number"] for line in lines], color=colour)
-        for line in lines:
-            number.plot(line["distance"], line["passed"]["number"], color=colour, marker=marker,
+        for abscissa, line in zip(places, lines):
+            number.plot(abscissa, line["passed"]["number"], color=colour, marker=marker,
                         fillstyle="none" if line["not_known"] > MOST_UNKNOWN else "full")
         at_outlet = line_at(group, outlet)
         if at_outlet:
             numbers = at_outlet["passed"]["numbers"]
-            sizes.stairs(numbers, np.arange(len(numbers) + 1) * width, color=colour, linewidth=1.6, label=label)
-    known = sorted({line["distance"] for group in members for line in group["families"]["lines"]})
+            sizes.stairs(numbers, np.arange(len(numbers) + 1) * width * scales[index], color=colour, linewidth=1.6,
+                         label=label)
     for axes in (share, number):
         style.logarithmic_abscissa(axes, known)
     share.set_ylim(0, 1.05)
     number.set_ylim(bottom=0)
     place = "place in the device" if any(group.get("passages") for group in members) else "distance from the release"
-    style.label(share, rf"{place} $x/\sigma$", "share of the area that passes")
-    style.label(number, rf"{place} $x/\sigma$", "droplets that pass, per droplet")
+    x, d = ("$x$ [mm]", "$d$ [mm]") if groups.are_in_mm else (r"$x/\sigma$", r"$d/\sigma$")
+    style.label(share, f"{place} {x}", "share of the area that passes")
+    style.label(number, f"{place} {x}", "droplets that pass, per droplet")
     sizes.set_ylim(bottom=0)
-    style.label(sizes, r"diameter $d/\sigma$",
-                rf"droplets per droplet at ${outlet:g}\,\sigma$, in classes of {width:g}")
+    style.label(sizes, f"diameter {d}",
+                rf"droplets per droplet at ${outlet:g}\,\sigma$, in classes of ${width:g}\,\sigma$")
     if any(groups.label_of(group) for group in members):
         sizes.legend(frameon=False)
     if length := groups.laboratory.get("length_mm"):
@@ -112,7 +123,7 @@ def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
     style.notes_of_panels(figure, [
         "bars: intervals from resampled released droplets; a droplet passes when it, or one from which it descends, "
         "first crosses the line",
-        f"at {outlet:g}σ the fate of at most {100 * max(unknown, default=0):.2g} % of the area is not known; "
+        f"{fate_note(outlet, max(unknown, default=0))}; "
         f"hollow: of more than {100 * MOST_UNKNOWN:g} %, so more droplets may still pass"])
     return figure
 
