@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     import pandas
 
 MOST_UNKNOWN = 0.1  # Largest share of the area that may have an unknown fate at the outlet.
-END_COLOURS = {"clogged": style.COLOURS[1], "flowing": style.COLOURS[0], "passed": style.COLOURS[0],
-               "small": style.COLOURS[3], "failed": style.COLOURS[6], "broken": "0.6"}
+# style.DROPLET is the colour of a droplet that has not ended.
+END_COLOURS = {"clogged": style.COLOURS[3], "flowing": style.COLOURS[0], "passed": style.COLOURS[0],
+               "small": style.COLOURS[4], "failed": style.COLOURS[6], "broken": "0.6"}
 END_WORDS = {"clogged": "clogged", "flowing": "still moving", "passed": "passed the exit",
              "small": "too small, not followed", "failed": "failed", "broken": "broke up"}
 
