@@ -8,7 +8,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 736
+LONG_PYTHON_LINES = 734
 
 
 def prose(text):

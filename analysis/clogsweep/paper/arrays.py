@@ -192,9 +192,9 @@ def sag_picture(runner: Runner) -> Plate:
     angle = np.linspace(0, 2 * math.pi, 200)
     circle = np.array([0.5 * np.cos(angle), 0.5 + 0.5 * np.sin(angle)])
     for axes, before, after, sag, title in [
-        (panels[0], circle, circle - np.array([[0], [disk_sag]]), disk_sag, rf"soft disk, $E_w = {stiffness:g}$"),
+        (panels[0], circle, circle - np.array([[0], [disk_sag]]), disk_sag, f"soft disk, wall stiffness {stiffness:g}"),
         (panels[1], outlines[0], outlines[-1], polygon_sag,
-         rf"deformable polygon, $\Gamma = {line_tension:g}$, {interface_of(polygon.word('preset'))}"),
+         f"deformable polygon, line tension {line_tension:g}, {interface_of(polygon.word('preset'))}"),
     ]:
         axes.axhspan(-0.3, 0, facecolor=style.OBSTACLE)
         axes.fill(*after, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1.2, label="with weight")
