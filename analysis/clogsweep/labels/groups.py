@@ -11,7 +11,7 @@ from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
-from . import AXES, INTERFACES, axis_label, interface_of, is_number, parameter_label, phrase, runs_a_point, symbol
+from . import AXES, INTERFACES, axis_label, interface_of, is_number, parameter_label, phrase, runs_a_point
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # names by obstacle_filling
@@ -198,9 +198,6 @@ class Groups:
         if not self.varies("model"):
             return list(names)
         return ["model", *(name for name in names if name != "model" and len(self.values(name) - {None}) > 1)]
-
-    def symbol(self, name: str) -> str:
-        return symbol(self.columns[name])
 
     def parameter_label(self, name: str, value: float | str | None) -> str:
         if name == "laboratory" and value in self.laboratories:
