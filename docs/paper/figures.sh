@@ -21,9 +21,11 @@ for name in "$@"; do
       "${sweep[@]}" friction=0 line-tension=0.35,0.4,0.5,0.6
       draw clogging-length "$folder/sweep.h5" --output "$folder/clogging-length"
       ;;
-    clogs) # docs/pictures/figure-5.png
-      draw figures 5 --output "$folder/clogs" --set clogging-friction:line-tension=0.05,3 \
-        --set clogging-friction:obstacle-gap=0.2 --set clogging-friction:friction=0.05 --set clogging-friction:seeds=1..3
+    clogs) # docs/pictures/figure-5.png, 6a and 6b
+      sets=()
+      for key in line-tension=0.1,0.5 friction=0.1 obstacle-gap=0.3 obstacle-density=65% vertices=512 seeds=1..3 \
+        box=50 boxes=4 max-time=6000; do sets+=(--set "clogging-friction:$key"); done
+      draw figures 5 6a 6b --output "$folder/clogs" "${sets[@]}"
       ;;
     mesh) draw figures W1 --output "$folder/mesh" ;; # docs/pictures/figure-W1.png
     *) echo "no figure is called $name; there are: clogging-length clogs mesh" >&2; exit 2 ;;

@@ -8,7 +8,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 735
+LONG_PYTHON_LINES = 734
 
 
 def prose(text):

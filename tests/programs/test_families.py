@@ -14,6 +14,7 @@ from drawing import Analysis
 from support import BIN, FAMILIES, SNAPSHOT_OF_A_DAUGHTER, TIMING, SweepTest, shared_sweep, table
 
 import clogsweep
+from clogsweep.drawing import families
 
 # Families with runs that take seconds. They have snapshots of ancestors and of daughters.
 LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
@@ -255,9 +256,25 @@ class Families(SweepTest, Analysis):
         self.draw("daughters", "s.h5", "--programs", BIN, "--task", task, "--frames", 5, "--film", "f.gif")
         self.assertGreater((self.folder / "f.gif").stat().st_size, 1000)
         self.draw("daughters", "s.h5", "--programs", BIN, "--outlet", 7, "--output", "seven")
-        for words, said in ([["--outlet", "7mm"], "no common diameter in mm"], [["--task", 99], "has no family"],
+        for words, said in ([["--outlet", "7mm"], "diameter is not known"], [["--task", 99], "has no family"],
                             [["--film", "g.gif"], "missing --task"]):
             self.refuse_analysis("daughters", "s.h5", "--programs", BIN, *words, "--output", "x", words=[said])
+
+    def test_families_of_several_diameters_are_drawn_in_millimetres(self):
+        self.write("lab.cfg", "diameter = 0.8 mm, 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
+        self.succeed("clogsweep", "--lab", "lab.cfg", "obstacle-gap=0.3mm", "obstacle-diameter=0.24mm",
+                     "obstacle-density=0.5/mm^2", "vertices=64", "box=20", "boxes=4", "break-up=daughters",
+                     "break-up-neck=0.05", "max-time=400", "seeds=1", "--quiet", "--output", "two.h5")
+        groups = clogsweep.open(self.folder / "two.h5", BIN).fit().known
+        share, number, sizes = families.draw(groups, None, "two.h5").axes
+        for axes in (share, number, sizes):
+            self.assertIn("[mm]", axes.get_xlabel())
+        places = [curve.lines[0].get_xdata()[0] for curve in share.containers]
+        self.assertAlmostEqual(max(places) / min(places), 2, delta=0.05, msg="10 diameters of each droplet")
+
+    def test_notes_do_not_call_a_known_fate_unknown(self):
+        self.assertEqual(families.fate_note(50, 0), "at 50σ the fate of the whole area is known")
+        self.assertIn("at most 0.66 % of the area is not known", families.fate_note(50, 0.0066))
 
     def test_keys_that_daughters_cannot_have_are_refused(self):
         keys = ["break-up=daughters", "break-up-neck=0.05", "vertices=64"]

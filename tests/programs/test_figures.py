@@ -436,9 +436,8 @@ class Pictures(Analysis):
         # The arrow rises from the lower bound.
         self.assertEqual(arrow.vertices[:, 1].min(), 0)
         self.assertEqual([line.get_ydata().tolist() for line in axes.lines if line.get_marker() is arrow], [[1.0]])
-        style.legend(axes, groups)
-        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()],
-                         ["most clogs wrapped", "most clogs squeezed", "most clogs hybrid"])
+        self.assertEqual(style.mechanism_note(groups), "circles: most clogs wrapped; squares: most clogs squeezed; "
+                         "diamonds: most clogs hybrid")
 
     def test_labels_of_an_abscissa_are_plain_numbers_side_by_side(self):
         for values in ([0.2, 0.25, 0.3, 10], np.linspace(0.2, 0.4, 15), [0.3, 0.31], [0.3], [0.04, 0.045, 0.05, 0.5, 5], np.geomspace(0.01, 10, 30)):

@@ -49,7 +49,7 @@ class Journal(Analysis):
     def test_own_points_colours_and_ranges_are_drawn(self):
         picture = self.fit(*GAPS).curve()
         axes, = picture.figure.axes
-        self.assertEqual(list(picture.curves), [r"$w_\mathrm{ob}/\sigma = 0.3$", r"$w_\mathrm{ob}/\sigma = 0.4$"])
+        self.assertEqual(list(picture.curves), [r"obstacle gap $0.3\,\sigma$", r"obstacle gap $0.4\,\sigma$"])
         first, second = picture.curves.values()
         for artist in first:
             artist.set_color("#123456")

@@ -401,7 +401,7 @@ class Looks(Analysis):
     def test_numbers_in_titles_have_four_figures_at_most(self):
         row = stored.read_rows(shared_sweep(*FEW))[0]
         row["obstacle_gap"] = 0.22190123
-        self.assertIn(r"minimum gap $0.2219\,\sigma$", clogs.title(row))
+        self.assertIn(r"obstacle gap $0.2219\,\sigma$", clogs.title(row))
 
     def test_examples_are_of_droplets_that_came_a_diameter_far_if_there_are_any(self):
         columns = [("task", int), ("distance", float), ("shape_parameter", float), ("mechanism", "S8")]

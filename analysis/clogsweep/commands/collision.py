@@ -19,6 +19,7 @@ import tempfile
 
 from ..collisions import collision
 from ..drawing import break_up
+from ..labels import key_phrase
 from ..reading import programs
 from ..style import Picture
 from ..tools import outputs
@@ -66,6 +67,6 @@ def body() -> int:
     if not any(low and high for low, high in found.values()):
         raise UserError(f"nothing to draw (no offset has a threshold between line tensions of {collision.TENSIONS[0]} "
                         f"and {collision.TENSIONS[1]}); try smaller --offsets")
-    keys = ", ".join(f"{key}={value}" for key, value in collisions.keys.items())
-    Picture(break_up.draw(found, keys)).save(arguments.output)
+    shared = ", ".join(key_phrase(*item) for item in collisions.keys.items())
+    Picture(break_up.draw(found, shared)).save(arguments.output)
     return 0

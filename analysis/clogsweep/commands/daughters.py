@@ -26,10 +26,10 @@ from ..tools.errors import UserError
 from . import command_line
 
 
-def outlet(word: str) -> tuple[float, str]:
-    """A distance and its unit."""
-    unit = "mm" if word.endswith("mm") else "sigma"
-    return command_line.between(0, 1e7, "a distance in sigma, or in mm such as 100mm")(word.removesuffix("mm")), unit
+def outlet(word: str) -> families.Outlet:
+    unit = next((unit for unit in ("mm", "sigma") if word.endswith(unit)), "")
+    place = command_line.between(0, 1e7, "a distance in sigma, or in mm such as 100mm")(word.removesuffix(unit))
+    return families.Outlet(place, unit or "sigma")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -72,7 +72,8 @@ def body() -> int:
         place = None
         if arguments.outlet is not None:
             families.with_families(groups, arguments.sweep)  # refuses a sweep without families
-            place = families.in_sigma(*arguments.outlet, groups)
+            distance, unit = arguments.outlet
+            place = families.in_sigma(distance, unit, groups)
             fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{place:.17g}"))
             groups = fit.known.finished(arguments.sweep)
         figure = families.draw(groups, place, arguments.sweep)

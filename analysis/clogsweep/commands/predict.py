@@ -24,6 +24,7 @@ import tempfile
 from typing import Any
 
 from ..collisions import prediction
+from ..labels import key_phrase
 from ..reading import fits, programs
 from ..results import laboratory
 from ..tools import outputs
@@ -97,6 +98,6 @@ def body() -> int:
         from .. import style  # loads matplotlib, which only a picture needs
         from ..drawing import predicted
 
-        shared = [f"{key}={value}" for key, value in keys.items() if key != "line-tension"]
+        shared = [key_phrase(key, value) for key, value in keys.items() if key != "line-tension"]
         style.Picture(predicted.draw(found, fit["groups"], fit["confidence"], shared)).save(arguments.output)
     return 0

@@ -205,9 +205,9 @@ def title(row: np.void) -> str:
     """Describes the droplet and its clog in words."""
     support = f"{100 * row['wrapped_support']:.0f} %"
     wrapped = f"{row['num_wrapped']} wrapped ({support})" if row["num_wrapped"] > 0 else "none wrapped"
-    return (rf"{mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$, task {row['task']}" "\n"
-            rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, "
-            rf"seed {row['seed']}" "\n"
+    return (rf"{mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$, "
+            f"task {row['task']}, seed {row['seed']}\n"
+            rf"line tension {row['line_tension']:.4g}, obstacle gap ${row['obstacle_gap']:.4g}\,\sigma$" "\n"
             f"{wrapped}, {rounded.count_text(row['num_gaps'], 'gap')}, {rounded.count_text(row['num_arcs'], 'arc')}")
 
 
@@ -222,7 +222,8 @@ def draw(axes: Axes, clog: Clog, view: Numbers, has_guides: bool = True) -> None
     polygon = clog.polygon
     middle = (polygon.min(axis=1) + polygon.max(axis=1)) / 2
     interface = polygon - middle[:, None]
-    axes.fill(*interface, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
+    axes.fill(*interface, facecolor=style.MECHANISM_COLOURS[clog.mechanism], edgecolor="black", linewidth=0.6,
+              alpha=0.7)
     corners = scipy.spatial.ConvexHull(interface.T).vertices
     axes.plot(*interface[:, [*corners, corners[0]]], color="0.4", linewidth=0.6, linestyle="--")
     patches: list[Patch] = [Circle(obstacle[:2] - middle, obstacle[2] / 2) for obstacle in clog.obstacles]

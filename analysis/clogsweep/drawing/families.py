@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -20,99 +21,126 @@ if TYPE_CHECKING:
     import pandas
 
 MOST_UNKNOWN = 0.1  # Largest share of the area that may have an unknown fate at the outlet.
-END_COLOURS = {"clogged": style.COLOURS[1], "flowing": style.COLOURS[0], "passed": style.COLOURS[0],
-               "small": style.COLOURS[3], "failed": style.COLOURS[6], "broken": "0.6"}
+# style.DROPLET is the colour of a droplet that has not ended.
+END_COLOURS = {"clogged": style.COLOURS[3], "flowing": style.COLOURS[0], "passed": style.COLOURS[0],
+               "small": style.COLOURS[4], "failed": style.COLOURS[6], "broken": "0.6"}
 END_WORDS = {"clogged": "clogged", "flowing": "still moving", "passed": "passed the exit",
              "small": "too small, not followed", "failed": "failed", "broken": "broke up"}
+
+
+@dataclasses.dataclass
+class Outlet:
+    """The line at which the distribution of diameters is taken."""
+
+    place: float
+    unit: str  # sigma or mm
+
+    def __str__(self) -> str:
+        return f"{self.place:g}\N{NO-BREAK SPACE}{'σ' if self.unit == 'sigma' else self.unit}"
+
+    def of(self, group: Group) -> float:
+        """The place in diameters of the group's droplets. @throws UserError  if the place is in mm, and the diameter is
+        not known"""
+        if self.unit == "sigma":
+            return self.place
+        length = (group.get("laboratory_scale") or {}).get("length_mm")
+        if not length:
+            raise UserError(f"invalid --outlet={self.place:g}mm (the droplets' diameter is not known) "
+                            "give the outlet in droplet diameters, or add --lab FILE")
+        return self.place / length
+
+    def line(self, group: Group) -> dict[str, Any] | None:
+        """The group's line at this place."""
+        return next((line for line in group["families"]["lines"] if math.isclose(line["distance"], self.of(group))), None)
 
 
 def with_families(groups: Groups, source: AnyPath) -> list[Group]:
     found = [group for group in groups.members if group.get("families")]
     if not found:
-        raise UserError(f"no droplet of {source} has daughters; "
-                        "run the sweep with break-up=daughters and break-up-neck")
+        raise UserError(f"no droplet of {source} has daughters; {remedy_for(groups)}")
     return found
 
 
-def line_at(group: Group, distance: float) -> dict[str, Any] | None:
-    """The group's line at this distance."""
-    return next((line for line in group["families"]["lines"] if math.isclose(line["distance"], distance)), None)
+def remedy_for(groups: Groups) -> str:
+    if any(group.get("break_up") == "daughters" for group in groups.members):
+        return "no family has ended yet; start or resume the sweep"
+    return "run the sweep with break-up=daughters and break-up-neck"
 
 
-def in_sigma(place: float, unit: str, groups: Groups) -> float:
-    """A place in droplet diameters. @throws UserError  if it is in mm, and the droplets have no common diameter"""
-    if unit == "sigma":
-        return place
-    length = groups.laboratory.get("length_mm")
-    if not length:
-        raise UserError(f"invalid --outlet={place:g}mm (the droplets have no common diameter in mm) give the outlet in "
-                        "droplet diameters, or add --lab FILE with one diameter")
-    return place / length
-
-
-def outlet_of(members: Sequence[Group], asked: float | None) -> float:
-    """Place of the line at which the distribution of diameters is taken [sigma]: the one asked for, or the farthest
-    line at which most of the area is known (the first line if there is none). @throws UserError  if no droplet reached
-    a line, and none was asked for"""
-    if asked is not None:
-        return asked
+def outlet_of(members: Sequence[Group]) -> Outlet:
+    """The farthest line at which most of the area is known (the first line if there is none). @throws UserError  if no
+    droplet reached a line"""
     known = sorted({line["distance"] for group in members for line in group["families"]["lines"]})
     if not known:
         raise UserError("no droplet went 10 sigma; give --outlet X with a smaller distance, or make max-time longer")
 
-    def is_known(distance: float) -> bool:
-        lines = [line_at(group, distance) for group in members]
+    def is_known(outlet: Outlet) -> bool:
+        lines = [outlet.line(group) for group in members]
         return all(line and line["not_known"] <= MOST_UNKNOWN for line in lines)
 
-    return max(filter(is_known, known), default=known[0])
+    outlets = [Outlet(distance, "sigma") for distance in known]
+    return next(filter(is_known, reversed(outlets)), outlets[0])
 
 
-def draw(groups: Groups, asked: float | None, source: AnyPath) -> Figure:
+def fate_note(outlet: Outlet, unknown: float) -> str:
+    """@param unknown  largest fraction of the area whose fate at the outlet is not known"""
+    of_area = f"at most {100 * unknown:.2g} % of the area is not known" if unknown > 0 else "the whole area is known"
+    return f"at {outlet} the fate of {of_area}"
+
+
+def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
     """@param asked  the outlet, or None for the farthest line at which most of the area is known"""
     members = with_families(groups, source)
-    outlet = outlet_of(members, asked)
+    outlet = asked or outlet_of(members)
     figure = style.new_figure(figsize=(8.6, 7.2), layout="constrained")
     grid = figure.add_gridspec(2, 2)
     share, number, sizes = (figure.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, :]))
     width = members[0]["families"]["diameter_class"]
+    # Droplets of several diameters have no common sigma, so all axes are in mm.
+    scales = [group["diameter_mm"] if groups.are_in_mm else 1.0 for group in members]
+    known = sorted({line["distance"] * scale for group, scale in zip(members, scales)
+                    for line in group["families"]["lines"]})
     for index, (group, colour) in enumerate(zip(members, style.shades(len(members)))):
         label = groups.label_of(group)
         lines = group["families"]["lines"]
-        places = [line["distance"] for line in lines]
-        passing = np.array([line["passing"] for line in lines])
-        ends = [[passing[i] if line[name] is None else line[name] for i, line in enumerate(lines)]
-                for name in ("passing_lower", "passing_upper")]
+        places = [line["distance"] * scales[index] for line in lines]
+        passing, *ends = (np.array([line[name] for line in lines], dtype=float)  # NaN: unknown
+                          for name in ("passing", "passing_lower", "passing_upper"))
+        bars = np.nan_to_num(np.abs(np.array(ends) - passing))
         shifted = [place * style.side_by_side(index, len(members), places) for place in places]
         marker = style.MARKERS[index % len(style.MARKERS)]
-        share.errorbar(shifted, passing, yerr=np.abs(np.array(ends) - passing), color=colour, marker=marker, capsize=2)
+        share.errorbar(shifted, passing, yerr=bars, color=colour, capsize=2)
         number.plot(places, [line["passed"]["number"] for line in lines], color=colour)
-        for line in lines:
-            number.plot(line["distance"], line["passed"]["number"], color=colour, marker=marker,
-                        fillstyle="none" if line["not_known"] > MOST_UNKNOWN else "full")
-        at_outlet = line_at(group, outlet)
+        for axes, abscissas, heights in ((share, shifted, passing),
+                                         (number, places, [line["passed"]["number"] for line in lines])):
+            for abscissa, height, line in zip(abscissas, heights, lines):
+                axes.plot(abscissa, height, color=colour, marker=marker,
+                          fillstyle="none" if line["not_known"] > MOST_UNKNOWN else "full")
+        at_outlet = outlet.line(group)
         if at_outlet:
             numbers = at_outlet["passed"]["numbers"]
-            sizes.stairs(numbers, np.arange(len(numbers) + 1) * width, color=colour, linewidth=1.6, label=label)
-    known = sorted({line["distance"] for group in members for line in group["families"]["lines"]})
+            sizes.stairs(numbers, np.arange(len(numbers) + 1) * width * scales[index], color=colour, linewidth=1.6,
+                         label=label)
     for axes in (share, number):
         style.logarithmic_abscissa(axes, known)
     share.set_ylim(0, 1.05)
     number.set_ylim(bottom=0)
     place = "place in the device" if any(group.get("passages") for group in members) else "distance from the release"
-    style.label(share, rf"{place} $x/\sigma$", "share of the area that passes")
-    style.label(number, rf"{place} $x/\sigma$", "droplets that pass, per droplet")
+    x, d = ("$x$ [mm]", "$d$ [mm]") if groups.are_in_mm else (r"$x/\sigma$", r"$d/\sigma$")
+    style.label(share, f"{place} {x}", "share of the area that passes")
+    style.label(number, f"{place} {x}", "droplets that pass, per released droplet")
     sizes.set_ylim(bottom=0)
-    style.label(sizes, r"diameter $d/\sigma$",
-                rf"droplets per droplet at ${outlet:g}\,\sigma$, in classes of {width:g}")
+    style.label(sizes, f"diameter {d}",
+                rf"droplets per released droplet at {outlet}, in classes of ${width:g}\,\sigma$")
     if any(groups.label_of(group) for group in members):
         sizes.legend(frameon=False)
     if length := groups.laboratory.get("length_mm"):
         add_scale(sizes, "top", length, "diameter [mm]")
-    unknown = [line["not_known"] for group in members if (line := line_at(group, outlet))]
+    unknown = [line["not_known"] for group in members if (line := outlet.line(group))]
     style.notes_of_panels(figure, [
         "bars: intervals from resampled released droplets; a droplet passes when it, or one from which it descends, "
         "first crosses the line",
-        f"at {outlet:g}σ the fate of at most {100 * max(unknown, default=0):.2g} % of the area is not known; "
+        f"{fate_note(outlet, max(unknown, default=0))}; "
         f"hollow: of more than {100 * MOST_UNKNOWN:g} %, so more droplets may still pass"])
     return figure
 
@@ -127,20 +155,21 @@ def order_of(paths: Sequence[str]) -> dict[str, float]:
     return heights
 
 
-def family_of(droplets: pandas.DataFrame, task: int, source: AnyPath) -> pandas.DataFrame:
-    """The droplets of one run. @throws UserError  if the run has no family"""
+def family_of(droplets: pandas.DataFrame, task: int, source: AnyPath, remedy: str = "") -> pandas.DataFrame:
+    """The droplets of one run. @param remedy  if no run has a family. @throws UserError  if the run has no family"""
     family = droplets[droplets.task == task]
     if family.empty:
         known = sorted(set(droplets.task))
-        remedy = (f"its tasks with one are {', '.join(map(str, known[:20]))}" if known
-                  else "run the sweep with break-up=daughters")
-        raise UserError(f"task {task} of {source} has no family that has ended; {remedy}")
+        if known:
+            remedy = f"its tasks with one are {', '.join(map(str, known[:20]))}"
+        raise UserError(f"task {task} of {source} has no family that has ended; "
+                        f"{remedy or 'run the sweep with break-up=daughters, or resume it'}")
     return family
 
 
 def draw_family(droplets: pandas.DataFrame, task: int, source: AnyPath, groups: Groups) -> Figure:
     """Draws the droplets of one family as bars from birth to end. @throws UserError  if the run has no family"""
-    family = family_of(droplets, task, source)
+    family = family_of(droplets, task, source, remedy_for(groups))
     heights = order_of(list(family.path))
     figure, axes = style.subplots(figsize=(7.6, 1.6 + 0.45 * (max(heights.values()) - min(heights.values()) + 1)))
     for member in family.itertuples():

@@ -178,7 +178,7 @@ class Film:
         # There is one path per edge. All paths are views of one array, because making new paths for each frame would
         # take longer than drawing them.
         self._edges = np.zeros((self._run.polygons.shape[2], 2, 2))
-        self._outline = PathCollection([Path(edge) for edge in self._edges], cmap="viridis", facecolor="none",
+        self._outline = PathCollection([Path(edge) for edge in self._edges], cmap=style.SCALE, facecolor="none",
                                        linewidth=2, capstyle="round")
         self._axes.add_collection(self._outline)
         self._speeds = None
@@ -334,7 +334,7 @@ def palette_of(first: Pixels) -> Image.Image:
     """One palette for all frames. It has the colours of the first frame, shades of the colour bar, greys, and colours
     that occur only at the end."""
     seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
-    bar = style.VIRIDIS(np.linspace(0, 1, SHADES))[:, :3]
+    bar = style.SCALE(np.linspace(0, 1, SHADES))[:, :3]
     greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)
     ends = matplotlib.colors.to_rgba_array(list(style.MECHANISM_COLOURS.values()))[:, :3]
     all_ = np.concatenate([seen, bar, greys, ends, 0.25 + 0.75 * ends])

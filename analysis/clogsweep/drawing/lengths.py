@@ -43,9 +43,11 @@ FITTED = "_fitted"
 FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # Fitted curve through points that share seeds.
 
 
-def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
-    """Explains those bars, hollow markers, arrows and dotted lines of draw_lengths() that occur in the picture.
+def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes],
+                 other: str = "other clogs") -> list[str]:
+    """Explains those markers, bars, arrows and dotted lines of draw_lengths() that occur in the picture.
     @param panels  the axes with the curves
+    @param other  see style.mechanism_note()
     @return  lines of text"""
     labels = {line.get_label() for axes in panels for line in axes.lines}
     marks = [f"bars: {100 * confidence:g} % confidence intervals"] if any(group["clogs"] > 0 for group in groups) else []
@@ -54,7 +56,7 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
                      + (", joined by dotted lines" if THROUGH_BOUNDS in labels else ""))
     if labels & {FITTED, FITTED_TO_COMMON_OBSTACLES}:
         marks.append(f"lines: fitted curves, with {100 * confidence:g} % bands")
-    lines = ["; ".join(marks)] if marks else []
+    lines = [line for line in (style.mechanism_note(groups, other), "; ".join(marks)) if line]
     if FITTED_TO_COMMON_OBSTACLES in labels:
         lines.append("points of a curve share seeds and so obstacles: their errors are correlated")
     return lines + flaw_notes(groups)
@@ -94,15 +96,14 @@ def excluded_notes(groups: Groups) -> list[str]:
     return textwrap.wrap(f"not in a curve: {'; '.join(excluded)}", NOTE_WIDTH) if excluded else []
 
 
-def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs",
-                   title: str = "") -> None:
+def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
     """Adds the ordinate, the legend and the caption to a picture of clogging lengths.
     @param drawn  all groups that were passed to draw_lengths()
-    @param other, title  see style.legend()"""
+    @param other  see style.mechanism_note()"""
     style.logarithmic_ordinate(axes)
     style.finish(axes, (LABORATORY if groups.are_in_mm else AXES)["length"], groups.caption(),
-                 [*length_notes(drawn, groups.confidence, [axes]), *automatic_notes(groups), *excluded_notes(groups)],
-                 drawn, other, title)
+                 [*length_notes(drawn, groups.confidence, [axes], other), *automatic_notes(groups),
+                  *excluded_notes(groups)])
 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str,
@@ -133,8 +134,11 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
         through = [group[lower if group["clogs"] == 0 else middle] for group in groups]
         axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
     bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
+    if bounds:
+        axes.margins(y=0.12)  # for the arrows
     axes.plot([x for x, _ in bounds], [group[lower] for _, group in bounds], color=colour, marker=style.LOWER_BOUND,
-              markerfacecolor="none", markersize=4.5 * size, linestyle="none",
+              markerfacecolor="none", linestyle="none",
+              markersize=4.5 * size * (1 + 0.3 * (index % 5)),  # The heads of arrows at one place are side by side.
               gid=style.mark("point", [group for _, group in bounds]))
 
 
@@ -247,7 +251,7 @@ def draw_on(axes: Axes, groups: Groups) -> None:
                      unit="_mm" if groups.are_in_mm else "")
 
     draw_curves(axes, groups, draw_curve)
-    finish_lengths(axes, groups, groups.members, title=groups.legend_title())
+    finish_lengths(axes, groups, groups.members)
     add_laboratory(axes, groups, "length")
 
 
@@ -257,5 +261,4 @@ def draw_speeds_on(axes: Axes, groups: Groups) -> None:
     has_points = any(curve.lines[0].get_xdata().size for curve in axes.containers)
     of_all = " of all runs" if speed_column(groups.members) == OF_ALL_RUNS else ""
     style.finish(axes, AXES["speed"] + of_all, groups.caption(),
-                 [*speed_notes(groups.members), *automatic_notes(groups)] if has_points else [],
-                 title=groups.legend_title())
+                 [*speed_notes(groups.members), *automatic_notes(groups)] if has_points else [])

@@ -38,5 +38,5 @@ def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: flo
     axes.set_xlabel(AXES["line_tension"])
     notes = length_notes(measured, confidence, [axes]) if measured else []
     style.finish(axes, AXES["length"], ", ".join([*shared, *([runs_a_point(measured)] if measured else [])]),
-                 [*notes, "no line: no obstacle and no pair holds the droplet"], measured)
+                 [*notes, "no line: no obstacle and no pair holds the droplet"])
     return figure

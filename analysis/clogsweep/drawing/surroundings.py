@@ -23,12 +23,17 @@ def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 
     draw_walls(axes, trajectory, shift)
 
 
+def colour_of(trajectory: Trajectory) -> str:
+    """The colour of the mechanism by which the droplet clogged, or style.DROPLET."""
+    return style.MECHANISM_COLOURS.get(trajectory.word("mechanism"), style.DROPLET)
+
+
 def draw_droplet(axes: Axes, trajectory: Trajectory, frame: int, origin: Point = (0.0, 0.0)) -> None:
     """Draws the droplet's outline in one frame as a smooth curve through the vertices, among the droplet's
     surroundings."""
     draw_surroundings(axes, trajectory, origin)
     outline = with_middles(with_middles(trajectory.polygons[frame]))
-    axes.fill(*(outline - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black",
+    axes.fill(*(outline - np.asarray(origin)[:, None]), facecolor=colour_of(trajectory), alpha=0.75, edgecolor="black",
               linewidth=1)
 
 

@@ -83,7 +83,7 @@ def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
 def time_scale(run: trajectory.Trajectory) -> matplotlib.cm.ScalarMappable:
     """A scale of colours for the times until the droplet nearly rests."""
     last = trajectory.along_the_way(run.polygons, 20)[-2:][0]
-    return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[last]), cmap=style.VIRIDIS)
+    return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[last]), cmap=style.SCALE)
 
 
 def draw_outlines(axes: Axes, run: trajectory.Trajectory, frames: Iterable[int], origin: Point = (0.0, 0.0)) -> None:
@@ -92,6 +92,6 @@ def draw_outlines(axes: Axes, run: trajectory.Trajectory, frames: Iterable[int],
     for frame in frames:
         x, y = run.polygons[frame] - np.asarray(origin)[:, None]
         is_last = frame == len(run.polygons) - 1
-        axes.fill(x, y, facecolor=style.DROPLET if is_last else "none", alpha=0.75 if is_last else 1.0,
+        axes.fill(x, y, facecolor=surroundings.colour_of(run) if is_last else "none", alpha=0.75 if is_last else 1.0,
                   edgecolor="black" if is_last else colours.to_rgba(run.times[frame]), linewidth=1.0,
                   zorder=3 if is_last else 2)

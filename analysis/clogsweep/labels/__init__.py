@@ -53,11 +53,6 @@ def tex(unit: str) -> str:
     return unit.replace("sqrt(", r"\sqrt{").replace(")", "}").replace("t0", "t_0").replace("degrees", r"{}^\circ").replace(" ", r"\,")
 
 
-def number(value: float | None) -> str:
-    # clogfit has no number for the density of a saturated mixture, because it is unknown before the run.
-    return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
-
-
 def is_number(word: str) -> bool:
     try:
         return math.isfinite(float(word))
@@ -78,29 +73,36 @@ def symbol(column: Column) -> str:
 
 
 def parameter_label(column: Column, value: float | str | None) -> str:
-    """A parameter and its value in words, such as $N_v = 128$."""
-    if "label" in column:
-        return str(column["label"].format(value))
-    if value is None and column["name"] != "obstacle_density":
-        return f"no {column['name'].replace('_', ' ')}"
-    if isinstance(value, str):
-        return f"{column['name'].replace('_', ' ')} {literal(value)}"
-    if column["name"] == "lattice_angle" and value is not None:
-        return f"lattice angle {value:.4g}°"  # The symbol may also be that of the tilt of plates.
-    return f"${symbol(column)} = {number(value)}$"
+    """A parameter and its value for a legend. Parameters that have an axis have their symbol."""
+    if column["name"] in AXES and isinstance(value, int | float):
+        return f"${column['symbol']} = {value:.4g}$"
+    return phrase(column, value)
 
 
 def phrase(column: Column, value: float | str | None) -> str:
-    """A parameter and its value in words, for captions, such as: obstacle gap 0.2 sigma."""
-    if "label" in column or value is None or isinstance(value, str):
-        return parameter_label(column, value)
+    """A parameter and its value in words, such as: obstacle gap 0.2 sigma."""
+    if "label" in column:
+        return str(column["label"].format(value))
+    # clogfit has no number for the density of a saturated mixture, because it is unknown before the run.
+    if value is None:
+        return "saturated arrays" if column["name"] == "obstacle_density" else f"no {column['name'].replace('_', ' ')}"
+    if isinstance(value, str):
+        return f"{column['name'].replace('_', ' ')} {literal(value)}"
     if column["name"] == "vertices":
         return f"{value:g} vertices"
     if column["unit"] == "degrees":
         return f"{column['name'].replace('_', ' ')} {value:.4g}°"
     unit = column["unit"]
     after = f"/{tex(unit[2:])}" if unit.startswith("1/") else rf"\,{tex(unit)}" if unit else ""
-    return f"{column['name'].replace('near_wall', 'near-wall').replace('_', ' ')} ${number(value)}{after}$"
+    return f"{column['name'].replace('near_wall', 'near-wall').replace('_', ' ')} ${value:.4g}{after}$"
+
+
+def key_phrase(key: str, value: str) -> str:
+    """A key of clogsweep and its value in words, such as: obstacle gap 0.2."""
+    if key == "preset":
+        return interface_of(value)
+    words = key.replace("-", " ").replace("near wall", "near-wall").replace("break up", "break-up")
+    return f"{value} vertices" if key == "vertices" else f"{words} {literal(value)}"
 
 
 def axis_label(column: Column) -> str:

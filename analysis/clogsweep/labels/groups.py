@@ -11,7 +11,7 @@ from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from ..tools.texts import literal
-from . import AXES, INTERFACES, axis_label, interface_of, is_number, parameter_label, phrase, runs_a_point, symbol
+from . import AXES, INTERFACES, axis_label, interface_of, is_number, parameter_label, phrase, runs_a_point
 
 NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 LATTICES = {"lattice": "square", "triangular": "triangular", "rhombic": "rhombic"}  # names by obstacle_filling
@@ -199,9 +199,6 @@ class Groups:
             return list(names)
         return ["model", *(name for name in names if name != "model" and len(self.values(name) - {None}) > 1)]
 
-    def symbol(self, name: str) -> str:
-        return symbol(self.columns[name])
-
     def parameter_label(self, name: str, value: float | str | None) -> str:
         if name == "laboratory" and value in self.laboratories:
             return literal(self.laboratory_label(str(value)))
@@ -255,10 +252,6 @@ class Groups:
                       key=lambda key: [(value is None, isinstance(value, str), value) for value in key])
         return [(self._label(dict(zip(names, key))),
                  [group for group in self.members if tuple(group[name] for name in names) == key]) for key in keys]
-
-    def legend_title(self) -> str:
-        """The names of the parameters whose values are in the labels of curves()."""
-        return ", ".join(name.replace("_", " ") for name in self.curve_parameters() if self._is_number(name) and name not in fits.DROPLETS)
 
     def is_logarithmic(self) -> bool:
         values = self.values(self.abscissa)

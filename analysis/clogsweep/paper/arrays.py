@@ -14,7 +14,7 @@ from .. import style
 from ..drawing import surroundings, survival_curve
 from ..drawing.lengths import draw_lengths, draw_speeds, length_notes
 from ..labels import AXES, interface_of, parameter_label
-from ..reading import stored, trajectory
+from ..reading import trajectory
 from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Group, Numbers
@@ -82,7 +82,7 @@ def finish(axes: Axes, runner: Runner, config: str, drawn: Sequence[Group], absc
     style.label(axes, AXES[abscissa], AXES[quantity])
     style.caption(axes, describe(runner.columns(config), drawn, varied))
     style.notes(axes, length_notes(drawn, runner.confidence(config), [axes]) if quantity == "length" else SPEED_NOTES)
-    style.legend(axes, drawn if quantity == "length" else ())
+    style.legend(axes)
 
 
 def curves(runner: Runner, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
@@ -192,9 +192,9 @@ def sag_picture(runner: Runner) -> Plate:
     angle = np.linspace(0, 2 * math.pi, 200)
     circle = np.array([0.5 * np.cos(angle), 0.5 + 0.5 * np.sin(angle)])
     for axes, before, after, sag, title in [
-        (panels[0], circle, circle - np.array([[0], [disk_sag]]), disk_sag, rf"soft disk, $E_w = {stiffness:g}$"),
+        (panels[0], circle, circle - np.array([[0], [disk_sag]]), disk_sag, f"soft disk, wall stiffness {stiffness:g}"),
         (panels[1], outlines[0], outlines[-1], polygon_sag,
-         rf"deformable polygon, $\Gamma = {line_tension:g}$, {interface_of(polygon.word('preset'))}"),
+         f"deformable polygon, line tension {line_tension:g}, {interface_of(polygon.word('preset'))}"),
     ]:
         axes.axhspan(-0.3, 0, facecolor=style.OBSTACLE)
         axes.fill(*after, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1.2, label="with weight")
@@ -246,8 +246,8 @@ def example(runner: Runner, mechanism: str) -> tuple[trajectory.Trajectory, pand
 
 def clog_title(run: trajectory.Trajectory, row: pandas.Series) -> str:
     return (rf"{trajectory.end_of(run)}: "
-            rf"$\Gamma = {row.line_tension:g}$, obstacle gap ${row.obstacle_gap:g}\,\sigma$, "
-            rf"$\mu = {row.friction:g}$, seed {row.seed}, after $r = {row.distance:.2f}\sigma$")
+            rf"line tension {row.line_tension:g}, obstacle gap ${row.obstacle_gap:g}\,\sigma$, "
+            rf"friction {row.friction:g}, seed {row.seed}, after $r = {row.distance:.2f}\,\sigma$")
 
 
 def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
@@ -330,7 +330,7 @@ def kinetic_energy(runner: Runner) -> Plate:
     data = []
     for index, (gap, run) in enumerate(energies(runner).items()):
         energy = np.where(run.table["kinetic_energy_ratio"] > 0, run.table["kinetic_energy_ratio"], math.nan)
-        label = rf"obstacle gap ${gap}\,\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
+        label = rf"obstacle gap ${gap}\,\sigma$ ({run.word('status')})"
         axes.plot(run.table["time"], energy, color=style.COLOURS[index], linewidth=0.9, label=label)
         data += [{"obstacle_gap": gap, "time": t, "kinetic_energy_ratio": e}
                  for t, e in zip(run.table["time"], run.table["kinetic_energy_ratio"])]
@@ -342,7 +342,7 @@ def kinetic_energy(runner: Runner) -> Plate:
     style.label(axes, r"time $t/t_0$", r"kinetic energy / kinetic energy at terminal speed $E_k/E_t$")
     axes.legend(frameon=False)
     row = run.row
-    style.caption(axes, rf"$\Gamma = 0.5$, obstacle diameter ${row['obstacle_diameter']:g}\,\sigma$, "
+    style.caption(axes, rf"line tension 0.5, obstacle diameter ${row['obstacle_diameter']:g}\,\sigma$, "
                         rf"saturated arrays, terminal speed ${row['terminal_speed']:g}$, "
                   rf"{row['vertices']} vertices, seed {row['seed']}, {interface_of(run.word('preset'))}")
     return Plate(drawing, data)
@@ -400,22 +400,13 @@ def displacements(runner: Runner) -> dict[float, trajectory.Trajectory]:
     return {row["line_tension"]: way for row, way in zip(rows, runner.ways("displacement", rows, 2))}
 
 
-def steady_speed(row: np.void) -> float:
-    """The steady speed of one run divided by the terminal speed. NaN for a row of version 1.0."""
-    if "steady_time" not in stored.columns_of(row):
-        return math.nan
-    return float(row["steady_distance"] / row["steady_time"] / row["terminal_speed"])
-
-
 @figure("D", "displacement against time for five line tensions, minimum gap 1.1", ["trajectory"], "3 s")
 def displacement(runner: Runner) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
     ends = {}
     for index, (line_tension, run) in enumerate(displacements(runner).items()):
-        speed = steady_speed(run.row)
-        label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
-            ", clogged" if run.word("status") == "clogged" else "")
+        label = rf"$\Gamma = {line_tension:g}$" + (" (clogged)" if run.word("status") == "clogged" else "")
         line, = axes.plot(run.table["time"], run.table["distance"], color=style.COLOURS[index], linewidth=1.2,
                           label=label)
         ends[line] = run.table["distance"][-1]

@@ -37,8 +37,8 @@ def profiles(runner: Runner, name: str, outlines: bool = False, **keys: object) 
 
 def parameters(run: Trajectory, orifice: float) -> str:
     row = run.row
-    return (rf"orifice ${orifice}\,\sigma$, $\Gamma = {row['line_tension']:g}$, "
-            rf"$b_0/b_\infty = {row['near_wall_drag']:g}$, terminal speed ${row['terminal_speed']:g}$, "
+    return (rf"orifice ${orifice}\,\sigma$, line tension {row['line_tension']:g}, "
+            f"near-wall drag {row['near_wall_drag']:g}, terminal speed {row['terminal_speed']:g}, "
             f"{row['vertices']} vertices, {interface_of(run.word('preset'))}")
 
 
@@ -116,7 +116,7 @@ def geometry(runner: Runner) -> Plate:
     left.annotate("", (1.2, 0), (0.75, 0), arrowprops={"arrowstyle": "-|>", "color": "black"})
     left.text(0.97, 0.06, "gravity", ha="center")
     surroundings.frame_limits(left, (-1.3, -1.3), (1.3, 1.3))
-    style.caption(left, f"(a) {parameters(channel, 0.4)}".replace(", $b_0", ",\n$b_0"))
+    style.caption(left, f"(a) {parameters(channel, 0.4)}")
     start = array.polygons[0].mean(axis=1)
     centres = array.polygons.mean(axis=2) - start
     right.plot(*centres.T, "o", color="black", markerfacecolor="none", markersize=3.5, markeredgewidth=0.6)
@@ -128,7 +128,8 @@ def geometry(runner: Runner) -> Plate:
     row = array.row
     style.caption(right, rf"(b) obstacle gap ${row['obstacle_gap']:g}\,\sigma$, "
                          rf"obstacle diameter ${row['obstacle_diameter']:g}\,\sigma$, "
-                  rf"$\Gamma = {row['line_tension']:g}$, {interface_of(array.word('preset'))}" "\n" rf"circles: centre, every {np.diff(array.times[:2])[0]:.3g} $t_0$; seed {row['seed']}")
+                  f"line tension {row['line_tension']:g}, {interface_of(array.word('preset'))}\n"
+                  rf"circles: centre, every {np.diff(array.times[:2])[0]:.3g} $t_0$; seed {row['seed']}")
     for axes in (left, right):
         axes.set_xlabel(r"$x/\sigma$, along gravity")
         axes.set_ylabel(r"$y/\sigma$")
@@ -231,8 +232,8 @@ def overshoot(runner: Runner) -> Plate:
             draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
-        style.caption(axes, rf"{origin}: orifice ${orifice}\,\sigma$, $b_0/b_\infty = {drag:g}$" "\n"
-                      rf"terminal speed ${', '.join(f'{terminal_speed(tilt):g}' for tilt in TILTS.values())}$, "
+        style.caption(axes, rf"{origin}: orifice ${orifice}\,\sigma$, near-wall drag {drag:g}" "\n"
+                      f"terminal speeds {', '.join(f'{terminal_speed(tilt):g}' for tilt in TILTS.values())}, "
                       rf"{run.row['vertices']} vertices, {interface_of(run.word('preset'))}")
     draw_measured(runner.profiles, panels[0], "v")
     for axes in panels:
@@ -280,7 +281,7 @@ def near_wall_drag(runner: Runner) -> Plate:
     axes.set_yscale("log")
     style.label(axes, r"distance between wall and droplet $d/\sigma$", r"$v_g/(v_t - v_g)$")
     axes.legend(frameon=False)
-    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, terminal speed $0.03$, {row['vertices']} vertices, "
+    style.caption(axes, f"line tension 1, near-wall drag 0.07, terminal speed 0.03, {row['vertices']} vertices, "
                         r"one run per point" "\n"
                   "drag of a droplet grows less steeply than that of its vertices: "
                   "near a wall only the nearest ones feel it")
@@ -305,16 +306,15 @@ def vertices(runner: Runner) -> Plate:
     for index, (count, run) in enumerate(meshes(runner).items()):
         for panel in (axes, inset):
             draw_profile(panel, run, "speed_ratio", index,
-                         rf"{count} vertices, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$"
-                         + ending(run))
+                         f"{count} vertices" + (" (stops)" if run.word("status") != "passed" else ""))
         data += [*profile_rows(run, f"N_v={count}"), extremes(run, f"N_v={count}")]
     finish(axes, "profile")
     inset.set_xlim(-0.4, -0.1)
     inset.set_ylim(0, 0.5)
     inset.tick_params(labelsize=7)
     axes.legend(frameon=False, fontsize=8, loc="lower left")
-    style.caption(axes, rf"orifice $0.7\,\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, "
-                        rf"terminal speed $0.032$, {interface_of(run.word('preset'))}"
+    style.caption(axes, rf"orifice $0.7\,\sigma$, line tension {run.row['line_tension']:g}, near-wall drag 0.07, "
+                        f"terminal speed 0.032, {interface_of(run.word('preset'))}"
                   "\ninset: near the first minimum")
     return Plate(drawing, data)
 

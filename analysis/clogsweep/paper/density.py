@@ -21,7 +21,7 @@ from .runner import Runner
 PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0
 NORMAL_QUANTILE = 1.96  # two-sided 95 %
 CONFIGS = {"density-robust": "constant tension", "density-elastic": "tension grows with the perimeter",
-           "density-friction": r"likewise, wall friction $\mu = 0.05$"}
+           "density-friction": "likewise, wall friction 0.05"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,7 +83,7 @@ def density_of_the_published_arrays(runner: Runner) -> Plate:
         fit = fitted(groups)
         text = rounded.with_interval(fit.density, fit.lower, fit.upper)
         shift = style.side_by_side(index, len(families), places)
-        draw_lengths(axes, [group["obstacle_density"] * shift for group in groups], groups, index, f"{label}: {text}",
+        draw_lengths(axes, [group["obstacle_density"] * shift for group in groups], groups, index, label,
                      linestyle="none")
         line = np.geomspace(places[0], places[-1], 100)
         axes.plot(line, fit.length(line), color=style.COLOURS[index], linewidth=1)
@@ -96,16 +96,17 @@ def density_of_the_published_arrays(runner: Runner) -> Plate:
         print(f"{label}: {text} per sigma^2, "
               f"{rounded.with_interval(*(100 * number for number in share))} % of the saturated density", flush=True)
     axes.axhspan(PUBLISHED_LENGTH - PUBLISHED_ERROR, PUBLISHED_LENGTH + PUBLISHED_ERROR,
-                 color="0.85", zorder=0, label="published: 24 \u00b1 1")
+                 color="0.85", zorder=0)
     style.logarithmic_ordinate(axes)
     style.logarithmic_abscissa(axes, places)
     style.grid(axes)
     axes.set_xlabel(r"obstacles per area $\rho_\mathrm{ob}\,\sigma^2$")
     axes.set_ylabel(AXES["length"])
     style.caption(axes, describe(runner.columns("density-robust"), everyone, ["obstacle_density"]))
-    style.notes(axes, ["legend: density at which the fitted curve has the published length, with its 95 % interval",
+    style.notes(axes, [rf"grey: the published length, ${PUBLISHED_LENGTH:g}\pm{PUBLISHED_ERROR:g}\,\sigma$; "
+                       "lines: fitted parabolas",
                        *length_notes(everyone, runner.confidence("density-robust"), [axes])])
-    style.legend(axes, everyone)
+    style.legend(axes)
     return Plate(drawing, data)
 
 

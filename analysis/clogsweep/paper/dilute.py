@@ -44,7 +44,7 @@ class Family:
 
     @property
     def label(self) -> str:
-        return rf"{self.name}, $\mu = {self.friction:g}$" if self.friction else self.name
+        return f"{self.name} {self.friction:g}" if self.friction else self.name
 
     @property
     def in_words(self) -> str:
@@ -101,7 +101,7 @@ def families(runner: Runner, chosen: Sequence[Family], finer: bool) -> Plate:
     marks: list[tuple[Artist, str]] = [(Line2D([], [], color="0.4", marker="s", markersize=3,
                                                linestyle=FINER), rf"{meshes[-1]} vertices, at fewer $\Gamma$ (else {meshes[0]})")] \
         if any(fine for _, _, fine in kinds) else []
-    marks.append((Line2D([], [], **STAR), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
+    marks.append((Line2D([], [], **STAR), r"published, gap $0.2\,\sigma$"))
     return Plate(panels.draw(runner, kinds[0][0].config, found, ["preset"], marks=marks, on_each=draw_published), data)
 
 
@@ -155,7 +155,7 @@ def place_of(values: Sequence[float], value: float) -> float:
 
 def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
     length = known_length(group)
-    face = style.VIRIDIS(norm(length))
+    face = style.SCALE(norm(length))
     axes.add_patch(Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=face, edgecolor="white", linewidth=0.6,
                              hatch="///" if group["clogs"] == 0 else None))
     ink = "black" if norm(length) > 0.55 else "white"
@@ -205,7 +205,7 @@ def lengths_on_a_map(runner: Runner) -> Plate:
         axes.plot(place_of(tensions, PUBLISHED["line_tension"]) + 0.33,
                   place_of(numbered, PUBLISHED["obstacle_density"]) + 0.28, marker="*", color="black",
                   markerfacecolor="gold", markersize=11)
-    drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8, extend="min")
+    drawing.colorbar(ScalarMappable(norm, style.SCALE), ax=panels, label=AXES["length"], shrink=0.8, extend="min")
     drawing.suptitle(describe(runner.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8,
                      color="0.25")
     style.notes_of_panels(drawing, [

@@ -51,7 +51,7 @@ def lengths_by_mesh(runner: Runner) -> Plate:
         ["hanging-friction"], "5 min")
 def lengths_by_friction(runner: Runner) -> Plate:
     config = "hanging-friction"
-    kinds = [(f"wall friction {parameter_label(runner.columns(config)['friction'], friction)}", groups)
+    kinds = [(f"wall friction {friction:g}", groups)
              for friction, groups in by(runner.sweep(config), "friction")]
     return by_mesh(runner, config, kinds, [])
 
@@ -99,26 +99,26 @@ def tensions_over_a_post(runner: Runner) -> Plate:
     passing = slides.polygons[int(np.argmin(np.abs(beyond)))][:, ::2]
     edges = np.stack([last.T, np.roll(last, -1, axis=1).T], axis=1) - POST[:2]
     line = left.add_collection(LineCollection(edges, array=tensions(last, held.row) / held.row["line_tension"],
-                                              cmap="viridis", linewidth=1.8))
+                                              cmap=style.SCALE, linewidth=1.8))
     drawing.colorbar(line, ax=left, label=r"tension/$\Gamma$")
     left.add_patch(Circle((0, 0), POST[2] / 2, color="0.8"))
     surroundings.frame_limits(left, (-0.4, -0.9), (4.2, 0.9))
     left.set_xlabel(r"$x/\sigma$ from the post, along gravity")
     left.set_ylabel(r"$y/\sigma$")
     data = []
-    for label, run, vertices, dashes in (("both", held, last, "-"), ("the lower one", slides, passing, "--")):
+    for label, run, vertices, dashes in (("both", held, last, "o-"), ("the lower one", slides, passing, "o--")):
         for interface, part, colour in zip(("lower", "upper"), interfaces(vertices), style.COLOURS):
             angles = np.degrees(np.arctan2(vertices[1, part] - POST[1], POST[0] - vertices[0, part]))
             values = tensions(vertices, run.row)[part] / run.row["line_tension"]
-            right.plot(angles, values, dashes, color=colour, label=f"{interface}, {label}")
+            right.plot(angles, values, dashes, color=colour, markersize=3.5, label=f"{interface}, {label}")
             data += [{"friction on": label, "interface": interface, "angle": angle, "tension": value}
                      for angle, value in zip(angles, values)]
     right.set_xlabel("angle around the post from its top [degrees]")
     right.set_ylabel(r"tension/$\Gamma$")
     style.grid(right)
-    style.legend(right, title="interface, friction on")
     row = held.row
-    drawing.suptitle(rf"$\Gamma = {row['line_tension']:g}$, $\mu = {row['friction']:g}$, {row['vertices']} vertices, "
-                     rf"{interface_of(held.word('preset'))}; "
+    drawing.suptitle(f"line tension {row['line_tension']:g}, friction {row['friction']:g}, "
+                     f"{row['vertices']} vertices, {interface_of(held.word('preset'))}; "
                      "the lower interface touches the post; left: friction on both", fontsize=9, color="0.25")
+    style.legend(right, title="interface, friction on")
     return Plate(drawing, data)

@@ -67,7 +67,7 @@ def draw(runner: Runner, config: str, panels: Sequence[Panel], without: Collecti
         line[0].set_ylabel(AXES["length"])
     for axes in all_axes[-1]:
         axes.set_xlabel(AXES["line_tension"])
-    handles = [(handle, label) for label, handle in entries.items()] + style.mechanism_entries(every) + list(marks)
+    handles = [(handle, label) for label, handle in entries.items()] + list(marks)
     below.legend(*zip(*handles), loc="center", ncols=4, frameon=False, fontsize=8, handlelength=3.5)
     fits = style.fitting(drawing, 8, 0.9 * drawing.bbox.width)
     drawing.suptitle(style.in_lines(describe(runner.columns(config), every, without), fits), fontsize=8, color="0.25")

@@ -4,7 +4,7 @@ and speeds of daughters."""
 import numpy as np
 
 from .. import style
-from ..drawing.families import line_at
+from ..drawing.families import fate_note, line_at
 from ..tools.errors import UserError
 from ..tools.hints import Group
 from .arrays import by
@@ -28,7 +28,8 @@ def outlet_of(groups: list[Group]) -> float:
 
 
 def label_of(group: Group) -> str:
-    exponent = rf", $v_t\propto d^{{{group['speed_exponent']:g}}}$" if group["speed_exponent"] else ""
+    power = f"diameter^{group['speed_exponent']:g}".removesuffix("^1")
+    exponent = f", speed proportional to {power}" if group["speed_exponent"] else ""
     return rf"neck ${group['break_up_neck']:g}\,\sigma$, {group['vertices']} vertices{exponent}"
 
 
@@ -48,24 +49,22 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
             width, passed = group["families"]["diameter_class"], line["passed"]
             edges = np.arange(len(passed["numbers"]) + 1) * width
             axes.stairs(passed["numbers"], edges, color=style.COLOURS[index], linewidth=1.4,
-                        linestyle=LINES[index % len(LINES)],
-                        label=f"{label_of(group)}: {passed['number']:.1f} droplets of ${passed['mean_diameter']:.2f}"
-                              r"\,\sigma$")
+                        linestyle=LINES[index % len(LINES)], label=label_of(group))
             data += [{"line_tension": tension, **{name: group[name] for name in VARIED},
                       "ancestors": group["families"]["ancestors"], "outlet": outlet, "diameter_from": edges[i],
                       "diameter_to": edges[i + 1], "number": passed["numbers"][i], "area": passed["areas"][i],
                       "clogged": line["clogged"], "small": line["small"], "not_known": line["not_known"]}
                      for i in range(len(passed["numbers"]))]
-        axes.set_title(rf"$\Gamma = {tension:g}$", fontsize=9)
-        axes.set_ylim(0, 1.5 * axes.dataLim.ymax)  # The legend is above the bars.
-        axes.legend(frameon=False, fontsize=7, loc="upper left")
+        axes.set_title(f"line tension {tension:g}", fontsize=9)
+    panels[0, 0].set_ylim(0, 1.65 * panels[0, 0].dataLim.ymax)  # The legend is above the bars.
+    panels[0, 0].legend(frameon=False, fontsize=8, loc="upper left")
     panels.flat[-1].set_xlim(0, 1)
     panels.flat[-1].set_xlabel(r"diameter $d/\sigma$")
-    panels[len(tensions) // 2, 0].set_ylabel(
-        rf"droplets per released droplet at ${outlet:g}\,\sigma$, in classes of ${width:g}\,\sigma$")
-    drawing.suptitle(describe(runner.columns(CONFIG), groups, ["vertices", "line_tension"]), fontsize=8, color="0.25")
+    drawing.supylabel(
+        rf"droplets per released droplet at ${outlet:g}\,\sigma$, in classes of ${width:g}\,\sigma$", fontsize="medium")
+    fits = style.fitting(drawing, 8, 0.9 * drawing.bbox.width)
+    drawing.suptitle(style.in_lines(describe(runner.columns(CONFIG), groups, ["vertices", "line_tension"]), fits),
+                     fontsize=8, color="0.25")
     unknown = max(point["not_known"] for point in data)
-    style.notes_of_panels(drawing, [
-        "legend: number of droplets per released droplet, and their mean diameter",
-        f"at {outlet:g}σ the fate of at most {100 * unknown:.2g} % of the area is not known"])
+    style.notes_of_panels(drawing, [fate_note(outlet, unknown)])
     return Plate(drawing, data)

@@ -114,9 +114,10 @@ def wedge_outline(wedge: Numbers, reach: float = 50.0) -> Numbers:
 def described(trajectory: Trajectory) -> str:
     """The parameters of the run in words."""
     row = trajectory.row
-    words = [rf"$\Gamma = {row['line_tension']:.4g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:.4g}$"]
+    name = "line tension" if trajectory.word("model") == "dp" else "wall stiffness"
+    words = [f"{name} {row[name.replace(' ', '_')]:.4g}"]
     if np.isfinite(row["obstacle_gap"]):
-        words.append(rf"minimum gap ${row['obstacle_gap']:.4g}\,\sigma$")
+        words.append(rf"obstacle gap ${row['obstacle_gap']:.4g}\,\sigma$")
         words.append(f"seed {row['seed']}")
     return ", ".join(words)
 

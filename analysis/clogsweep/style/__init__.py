@@ -23,7 +23,6 @@ from matplotlib.collections import PolyCollection
 from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
-from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.transforms import Bbox
 
@@ -39,11 +38,13 @@ if outputs.are_of_command:
 # The palette of Okabe and Ito, which is safe for colour-blind readers. Every curve has a different marker.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
-MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": COLOURS[2], "other": COLOURS[3]}
+# No curve has these colours.
+MECHANISM_COLOURS = {"wrapped": "#6A3D9A", "squeezed": "#8DB600", "hybrid": "#7F4F24", "other": "0.45"}
 CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 PASSED_COLOUR = "0.62"
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
-VIRIDIS = matplotlib.colormaps["viridis"]
+MARKER_WORDS = {"wrapped": "circles", "squeezed": "squares", "hybrid": "diamonds", "other": "crosses"}
+SCALE = matplotlib.colormaps["cividis"]  # has no colour of a mechanism
 PASSAGES = matplotlib.colormaps["YlOrBr"]  # Small fractions are light, so that lines and markers remain visible.
 OBSTACLE = "0.72"
 NOTE_SIZE = 8
@@ -87,7 +88,7 @@ def curve_style(index: int) -> dict[str, Any]:
 def shades(number: int) -> Sequence[Any]:
     """The colours of curves in the order of a parameter. If there are few curves, neighbouring curves have different
     hues."""
-    return COLOURS[:number] if number <= len(COLOURS) else VIRIDIS(np.linspace(0, 0.95, number))
+    return COLOURS[:number] if number <= len(COLOURS) else SCALE(np.linspace(0, 0.95, number))
 
 
 @contextlib.contextmanager
@@ -126,13 +127,11 @@ def main_mechanism(group: Group) -> str:
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
 
 
-def mechanism_entries(groups: Collection[Group], other: str = "other clogs") -> list[tuple[Artist, str]]:
-    """Legend entries for the markers that draw_lengths() gave these groups. @param other  the name for clogs of no
-    mechanism"""
+def mechanism_note(groups: Collection[Group], other: str = "other clogs") -> str:
+    """Explains the markers that draw_lengths() gave these groups. @param other  the name for clogs of no mechanism"""
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
-    return [(Line2D([], [], color="0.4", marker=marker, linestyle="none"),
-             f"most clogs {name}" if name != "other" else other)
-            for name, marker in MECHANISM_MARKERS.items() if name in names]
+    return "; ".join(f"{word}: {other if name == 'other' else 'most clogs ' + name}"
+                     for name, word in MARKER_WORDS.items() if name in names)
 
 
 def legend_off_curves(axes: Axes, entries: Sequence[tuple[Artist, str]], title: str) -> Legend:
@@ -169,13 +168,10 @@ def width_of(legend: Legend) -> float:
     return legend.get_window_extent().width / legend.figure.dpi
 
 
-def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs", title: str = "") -> None:
-    """Draws a legend of named curves and of mechanism_entries(). A long legend is placed beside the axes. The figure is
-    widened for it, but only once."""
+def legend(axes: Axes, title: str = "") -> None:
+    """Draws a legend of named curves. A long legend is placed beside the axes. The figure is widened for it, but only
+    once."""
     entries = journal.legend_entries(axes)
-    for mark, name in mechanism_entries(groups, other):
-        entries.append((axes.add_line(mark), name))
-        mark.set_label(name)
     if len(entries) > len(COLOURS):
         before = axes.get_legend()
         width_before = width_of(before) if before and len(before.get_texts()) > len(COLOURS) else 0.0
@@ -291,16 +287,14 @@ def caption(axes: Axes, text: str) -> None:
     axes.set_title(in_lines(text, fitting(axes.figure, 8, widest)), fontsize=8, color="0.25")
 
 
-def finish(axes: Axes, up: str, shared: str, lines: Sequence[str], groups: Collection[Group] = (),
-           other: str = "other clogs", title: str = "") -> None:
-    """Adds the ordinate's label, grid, legend, caption and notes to a picture of curves. @param groups, other, title
-    see legend()"""
+def finish(axes: Axes, up: str, shared: str, lines: Sequence[str]) -> None:
+    """Adds the ordinate's label, grid, legend, caption and notes to a picture of curves."""
     axes.set_ylabel(up)
     grid(axes)
     caption(axes, shared)
     if lines:
         notes(axes, lines)
-    legend(axes, groups, other, title)
+    legend(axes)
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:
