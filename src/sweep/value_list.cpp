@@ -151,7 +151,8 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
 [[noreturn]] void refuse_number(std::string_view text, std::string_view rest, const std::string& why) {
   constexpr std::string_view no_unit = ".+-*/0123456789:;,()=";
   rest = trimmed(rest);
-  const bool is_per_area = rest.starts_with('/') && rest.ends_with("^2");
+  const bool is_per_area =
+      rest.starts_with('/') && rest.size() > 1 && no_unit.find(rest[1]) == std::string_view::npos;
   const bool has_unit = rest.size() < text.size() && !rest.empty() &&
                         (is_per_area || no_unit.find(rest[0]) == std::string_view::npos);
   if (has_unit) throw NumberWithUnit(fmt::format("'{}' {}", text, why));

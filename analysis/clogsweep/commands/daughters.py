@@ -69,12 +69,11 @@ def body() -> int:
     if arguments.task is not None:
         figure = families.draw_family(droplets, arguments.task, arguments.sweep, groups)
     else:
-        place = None
-        if arguments.outlet is not None:
-            families.with_families(groups, arguments.sweep)  # refuses a sweep without families
-            distance, unit = arguments.outlet
-            place = families.in_sigma(distance, unit, groups)
-            fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{place:.17g}"))
+        asked: families.Outlet | None = arguments.outlet
+        if asked:
+            for group in families.with_families(groups, arguments.sweep):
+                asked.of(group)  # refuses a place in mm if a diameter is not known
+            fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{asked.place:.17g}{asked.unit}"))
             groups = fit.known.finished(arguments.sweep)
-        figure = families.draw(groups, place, arguments.sweep)
+        figure = families.draw(groups, asked, arguments.sweep)
     return command_line.save(Picture(figure, fit.source), arguments)

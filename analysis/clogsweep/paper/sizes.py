@@ -4,7 +4,7 @@ and speeds of daughters."""
 import numpy as np
 
 from .. import style
-from ..drawing.families import fate_note, line_at
+from ..drawing.families import Outlet, fate_note
 from ..tools.errors import UserError
 from ..tools.hints import Group
 from .arrays import by
@@ -18,13 +18,13 @@ LINES = ("-", "--", ":", "-.")
 VARIED = ("speed_exponent", "break_up_neck", "vertices")
 
 
-def outlet_of(groups: list[Group]) -> float:
+def outlet_of(groups: list[Group]) -> Outlet:
     """The farthest line up to OUTLET that droplets of all groups have passed."""
     lines = [{line["distance"] for line in group["families"]["lines"]} for group in groups]
     common = [distance for distance in set.intersection(*lines) if distance <= OUTLET]
     if not common:
         raise UserError(f"the droplets of {CONFIG} do not go 10 sigma; make max-time longer")
-    return max(common)
+    return Outlet(max(common), "sigma")
 
 
 def label_of(group: Group) -> str:
@@ -44,14 +44,14 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
     data = []
     for (tension, members), axes in zip(tensions, panels.flat):
         for index, group in enumerate(sorted(members, key=lambda member: [member[name] for name in VARIED])):
-            line = line_at(group, outlet)
+            line = outlet.line(group)
             assert line  # outlet_of() chooses a line of all groups.
             width, passed = group["families"]["diameter_class"], line["passed"]
             edges = np.arange(len(passed["numbers"]) + 1) * width
             axes.stairs(passed["numbers"], edges, color=style.COLOURS[index], linewidth=1.4,
                         linestyle=LINES[index % len(LINES)], label=label_of(group))
             data += [{"line_tension": tension, **{name: group[name] for name in VARIED},
-                      "ancestors": group["families"]["ancestors"], "outlet": outlet, "diameter_from": edges[i],
+                      "ancestors": group["families"]["ancestors"], "outlet": outlet.place, "diameter_from": edges[i],
                       "diameter_to": edges[i + 1], "number": passed["numbers"][i], "area": passed["areas"][i],
                       "clogged": line["clogged"], "small": line["small"], "not_known": line["not_known"]}
                      for i in range(len(passed["numbers"]))]
@@ -61,7 +61,7 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
     panels.flat[-1].set_xlim(0, 1)
     panels.flat[-1].set_xlabel(r"diameter $d/\sigma$")
     drawing.supylabel(
-        rf"droplets per released droplet at ${outlet:g}\,\sigma$, in classes of ${width:g}\,\sigma$", fontsize="medium")
+        rf"droplets per released droplet at {outlet}, in classes of ${width:g}\,\sigma$", fontsize="medium")
     fits = style.fitting(drawing, 8, 0.9 * drawing.bbox.width)
     drawing.suptitle(style.in_lines(describe(runner.columns(CONFIG), groups, ["vertices", "line_tension"]), fits),
                      fontsize=8, color="0.25")
