@@ -237,7 +237,7 @@ def overshoot(runner: Runner) -> Plate:
                       rf"{run.row['vertices']} vertices, {interface_of(run.word('preset'))}")
     draw_measured(runner.profiles, panels[0], "v")
     for axes in panels:
-        axes.legend(frameon=False, fontsize=8, loc="lower right")
+        axes.legend(frameon=False, fontsize=8, loc="lower right", title="line tension")
     return Plate(drawing, data)
 
 
