@@ -124,14 +124,14 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
     for axes in (share, number):
         style.logarithmic_abscissa(axes, known)
     share.set_ylim(0, 1.05)
-    number.set_ylim(bottom=0)
+    number.set_ylim(0, 1.05 * number.dataLim.ymax)
     place = "place in the device" if any(group.get("passages") for group in members) else "distance from the release"
     x, d = ("$x$ [mm]", "$d$ [mm]") if groups.are_in_mm else (r"$x/\sigma$", r"$d/\sigma$")
     style.label(share, f"{place} {x}", "share of the area that passes")
     style.label(number, f"{place} {x}", "droplets that pass, per released droplet")
     sizes.set_ylim(bottom=0)
     style.label(sizes, f"diameter {d}",
-                rf"droplets per released droplet at {outlet}, in classes of ${width:g}\,\sigma$")
+                f"droplets per released droplet\nat {outlet}, in classes of ${width:g}\\,\\sigma$")
     if any(groups.label_of(group) for group in members):
         sizes.legend(frameon=False)
     if length := groups.laboratory.get("length_mm"):
