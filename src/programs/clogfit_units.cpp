@@ -102,8 +102,12 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
   if (!std::isnan(lab.thickness)) {
     lines.push_back({"line tension of the cell, tension times thickness",
                      with_unit(scales.line_tension_of_cell / (milli * milli), "uN"), ""});
-    lines.push_back({"width of a neck that breaks: the cell's thickness",
-                     with_unit(lab.thickness / milli, "mm"), equals("break-up-neck", scales.break_up_neck)});
+    constexpr double largest_neck = 0.5;
+    const char* neck = scales.break_up_neck > largest_neck
+                           ? "width of a neck that breaks: the cell's thickness (too wide for break-up-neck)"
+                           : "width of a neck that breaks: the cell's thickness";
+    lines.push_back(
+        {neck, with_unit(lab.thickness / milli, "mm"), equals("break-up-neck", scales.break_up_neck)});
   }
   return lines;
 }

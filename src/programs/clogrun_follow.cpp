@@ -63,6 +63,10 @@ int follow_droplet(const cli::CommandLine& line, const sweep::RunRow& row) {
     throw Error(fmt::format(
         "cannot follow droplet {} of task {} (it {}); give another path", member.path, row.task,
         member.status == MemberEnd::small ? "is smaller than smallest-daughter" : "failed where it began"));
+  console::say(
+      fmt::format("clogrun: all lengths and times are in the units of this droplet; its diameter is {:.4g} "
+                  "of the ancestor's",
+                  member.diameter));
   store::Provenance origin = cli::origin(line);
   origin.emplace_back("droplet", member.path);
   for (const auto& [name, value] : {std::pair{"droplet_diameter", member.diameter},

@@ -59,7 +59,9 @@ void refuse_interface_keys(const Settings& settings) {
 void refuse_given_stiffnesses_of_families(const Settings& settings) {
   if (settings.text("break-up") == name(BreakUp::end) || settings.text("model") == name(Model::sp)) return;
   for (const char* key : {"time-step", "wall-stiffness", "area-stiffness", "perimeter-stiffness"})
-    if (is_changed(settings, key)) refuse_one_of(settings, key, "break-up");
+    if (is_changed(settings, key))
+      throw Refusal({.key = key, .named = {"break-up"}}, settings.text(key),
+                    "with break-up=daughters each droplet has its own automatic value", "leave it out");
 }
 
 }  // namespace

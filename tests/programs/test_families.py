@@ -226,6 +226,11 @@ class Families(SweepTest, Analysis):
             first = [one for one in passed.itertuples()
                      if not any((one.task, one.path[:size]) in known for size in range(len(one.path)))]
             self.assertAlmostEqual(line["passed"]["number"], len(first) / 4)
+            each = np.array([sum(one.task == task for one in first) for task in range(4)])
+            if each.min() < each.max():
+                means = np.random.default_rng(1).choice(each, (20000, 4)).mean(axis=1)
+                np.testing.assert_allclose([line["passed"]["number_lower"], line["passed"]["number_upper"]],
+                                           np.quantile(means, [0.025, 0.975]), atol=0.26)
         self.assertEqual([line["distance"] for line in lines["groups"][0]["families"]["lines"]][:2], [3, 7])
 
     def test_the_exit_of_a_device_is_a_line(self):
@@ -256,6 +261,9 @@ class Families(SweepTest, Analysis):
         self.draw("daughters", "s.h5", "--programs", BIN, "--task", task, "--frames", 5, "--film", "f.gif")
         self.assertGreater((self.folder / "f.gif").stat().st_size, 1000)
         self.draw("daughters", "s.h5", "--programs", BIN, "--outlet", 7, "--output", "seven")
+        self.draw("daughters", "s.h5", "--programs", BIN, "--outlet", "1000sigma", "--output", "beyond")
+        self.draw("report", "s.h5", "--programs", BIN, "--examples", 0)
+        self.assertIn("<h2>Families</h2>", (self.folder / "s-report.html").read_text())
         for words, said in ([["--outlet", "7mm"], "diameter is not known"], [["--task", 99], "has no family"],
                             [["--film", "g.gif"], "missing --task"]):
             self.refuse_analysis("daughters", "s.h5", "--programs", BIN, *words, "--output", "x", words=[said])
@@ -271,10 +279,18 @@ class Families(SweepTest, Analysis):
             self.assertIn("[mm]", axes.get_xlabel())
         places = [curve.lines[0].get_xdata()[0] for curve in share.containers]
         self.assertAlmostEqual(max(places) / min(places), 2, delta=0.05, msg="10 diameters of each droplet")
+        for option, others in (("6mm", [7.5, 3.75]), ("4sigma", [4, 4])):
+            self.draw("daughters", "two.h5", "--programs", BIN, "--outlet", option, "--output", "mm")
+            printed = json.loads(self.succeed("clogfit", "two.h5", "--format=json", "--lines", option).stdout)["groups"]
+            found = [group["families"]["lines"][0]["distance"] for group in printed]
+            np.testing.assert_allclose(sorted(found), sorted(others), rtol=1e-12)
+        table_of_families = self.succeed("clogfit", "two.h5", "--lines", "6mm").stdout.split("droplets per ancestor")[1]
+        self.assertIn("mean d/mm", table_of_families)
+        self.refuse("clogfit", "two.h5", "--lines", "6s", words=["invalid --lines=6s", "unknown unit 's' for length"])
 
     def test_notes_do_not_call_a_known_fate_unknown(self):
-        self.assertEqual(families.fate_note(50, 0), "at 50σ the fate of the whole area is known")
-        self.assertIn("at most 0.66 % of the area is not known", families.fate_note(50, 0.0066))
+        self.assertEqual(families.fate_note(families.Outlet(50, "sigma"), 0), "at 50\N{NO-BREAK SPACE}σ the fate of the whole area is known")
+        self.assertIn("at 7\N{NO-BREAK SPACE}mm the fate of at most 0.66 % of the area is not known", families.fate_note(families.Outlet(7, "mm"), 0.0066))
 
     def test_keys_that_daughters_cannot_have_are_refused(self):
         keys = ["break-up=daughters", "break-up-neck=0.05", "vertices=64"]

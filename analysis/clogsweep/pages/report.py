@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..drawing import activity, clogs, curve, device, lengths, passages, survival_curve
+from ..drawing import activity, clogs, curve, device, families, lengths, passages, survival_curve
 from ..labels import LABORATORY
 from ..labels.groups import Groups
 from ..reading import fits, programs, stored
@@ -370,9 +370,11 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares")
             for label, all_of_it in groups.curves()
             if (members := with_runs(all_of_it))]
+    broken = [chart(families.draw(groups, None, sweep), "droplets that break up, and the sizes of those that pass")] if any(
+        (group.get("families") or {}).get("lines") for group in groups.members) else []
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals),
-            "What becomes of them": side_by_side(ends),
+            "What becomes of them": side_by_side(ends), "Families": side_by_side(broken),
             **devices(groups, sweep, count, clogrun, charts),
             "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
 

@@ -45,7 +45,8 @@ void check_daughters(const RunParameters& run) {
     throw Refusal({.key = "break-up", .named = {key}}, name(BreakUp::daughters), why, remedy);
   };
   if (run.dp.break_up_neck == 0)
-    refuse("break-up-neck", "no droplet breaks up without break-up-neck", "give break-up-neck");
+    refuse("break-up-neck", "no droplet breaks up without break-up-neck",
+           "give break-up-neck; clogfit units prints it for droplets between plates");
   if (run.drag.near_wall > 0)
     refuse("near-wall-drag", "the drag of smaller droplets near walls is not known", "give near-wall-drag=0");
   if (run.dp.wall_tension.value_or(1) != 1 || run.dp.receding_angle != run.dp.advancing_angle)
