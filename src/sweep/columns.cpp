@@ -248,8 +248,7 @@ std::vector<Column> columns_of_dwells() {
   }
   all.push_back(member(
       "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, result, "t0",
-      "for every duration above this value, the dwell columns contain the first dwell that exceeded the "
-      "duration"));
+      "the dwell columns contain the first dwell longer than T, for every T above this value"));
   all.push_back(member(
       "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, result, "sigma",
       "distance at which the last dwell of any duration began; this dwell is the clog or, in other runs, the "
@@ -298,7 +297,7 @@ std::vector<Column> columns_before_dwells() {
       member(
           "mean_speed", [](auto& row) -> auto& { return row.speed.mean; }, result, "sqrt(sigma g)",
           "mean speed from the end of the transient to the arrest; NaN if the droplet moved less than half a "
-          "diameter in that time, or if the transient took more than half of the run"),
+          "diameter between them, or if the transient took more than half of the run"),
       member(
           "mean_speed_error", [](auto& row) -> auto& { return row.speed.error; }, result, "sqrt(sigma g)",
           "standard error of mean_speed from its variation during the run; NaN if the run was too short"),
@@ -360,9 +359,10 @@ std::vector<Column> columns_after_dwells() {
           "over obstacles; NaN for other droplets"),
       member(
           "friction_use", [](auto& row) -> auto& { return row.hold.friction_use; }, result, "",
-          "moment of friction about a post's centre, divided by the largest moment that friction could exert "
-          "in this direction; the maximum over all posts over which the clogged polygon hangs and that give "
-          "at least a tenth of its support; NaN for other droplets"),
+          "fraction of the largest possible friction that holds the clogged polygon on a post, as moments "
+          "about "
+          "the post's centre; the maximum over all posts that give at least a tenth of its support; NaN for "
+          "other droplets"),
       member(
           "largest_shape_parameter",
           [](auto& row) -> auto& { return row.passage.largest_shape_parameter.value; }, result, "",

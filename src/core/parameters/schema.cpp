@@ -732,7 +732,7 @@ std::vector<Parameter> self_contact_entries() {
                                     "use at most 0.1")}}),
       entry("film-friction", [](auto& run) -> auto& { return run.dp.film_friction; },
             {.column = "film_friction",
-             .meaning = "whether a closed film transmits wall friction to the interface above it; auto: on "
+             .meaning = "whether friction of the wall also holds the upper layers of the interface; auto: on "
                         "with friction and self-contact",
              .scope = &polygons,
              .automatic_in = &polygons,
