@@ -37,7 +37,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="line at which diameters are counted, in sigma, or in mm such as 100mm (the last of 10, "
                              "20, 50, 100, ... sigma and the exit that at most a tenth of the area may still pass)")
     parser.add_argument("--task", type=command_line.whole(0), help="draw the family of this run")
-    parser.add_argument("--film", type=pathlib.Path, help="with --task: make this film of the family instead of the picture, .mp4 or .gif")
+    parser.add_argument("--film", type=pathlib.Path,
+                        help="with --task: make this film of the family instead of the picture, .mp4 or .gif")
     parser.add_argument("--frames", type=command_line.whole(2), default=300, help="number of frames of the film (300)")
     parser.add_argument("--rate", type=command_line.whole(1), default=20, help="frames of the film per second (20)")
 

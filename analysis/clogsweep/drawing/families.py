@@ -51,7 +51,8 @@ class Outlet:
 
     def line(self, group: Group) -> dict[str, Any] | None:
         """The group's line at this place."""
-        return next((line for line in group["families"]["lines"] if math.isclose(line["distance"], self.of(group))), None)
+        place = self.of(group)
+        return next((line for line in group["families"]["lines"] if math.isclose(line["distance"], place)), None)
 
 
 def with_families(groups: Groups, source: AnyPath) -> list[Group]:

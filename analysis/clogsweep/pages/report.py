@@ -370,8 +370,10 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares")
             for label, all_of_it in groups.curves()
             if (members := with_runs(all_of_it))]
-    broken = [chart(families.draw(groups, None, sweep), "droplets that break up, and the sizes of those that pass")] if any(
-        (group.get("families") or {}).get("lines") for group in groups.members) else []
+    broken = []
+    if any((group.get("families") or {}).get("lines") for group in groups.members):
+        broken.append(chart(families.draw(groups, None, sweep),
+                            "droplets that break up, and the sizes of those that pass"))
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals),
             "What becomes of them": side_by_side(ends), "Families": side_by_side(broken),
