@@ -96,13 +96,19 @@ def read(name: str, folder: pathlib.Path = FOLDER) -> Finished:
                                na_values={column: [""] for column in [*PARAMETERS, *RESULTS] if column not in WORDS})
     except (OSError, EOFError, ValueError) as error:
         raise UserError(f"cannot read the rows of {name} in {folder} ({error}); check them out again") from error
+    add_breaking(rows)
     for name in BREAKING:
-        if name not in rows:
-            rows[name] = (rows["model"] == "sp").map({True: math.nan, False: 0.0})
         for group in answer["groups"]:
             group.setdefault(name, None if group["model"] == "sp" else 0.0)
     rows.insert(0, "task", range(len(rows)))
     return Finished(answer, rows)
+
+
+def add_breaking(rows: pandas.DataFrame) -> None:
+    """Adds parameters of break-up to rows of older programs, in which no droplet broke up."""
+    for name in BREAKING:
+        if name not in rows:
+            rows[name] = (rows["model"] == "sp").map({True: math.nan, False: 0.0})
 
 
 def names_in(folder: pathlib.Path = FOLDER) -> list[str]:
@@ -115,7 +121,9 @@ def identity(group: Group) -> tuple[Any, ...]:
 
 
 def rounded_rows(sweep: pathlib.Path, folder: pathlib.Path) -> pandas.DataFrame:
-    rows = stored.read_table(sweep, folder)[[*PARAMETERS, "seed", *RESULTS]]
+    table = stored.read_table(sweep, folder)
+    add_breaking(table)
+    rows = table[[*PARAMETERS, "seed", *RESULTS]].copy()
     for name in rows.columns[[kind.kind == "f" for kind in rows.dtypes]]:
         rows[name] = [float(f"{value:.{DIGITS.get(name, 6)}g}") for value in rows[name]]
     return rows
