@@ -162,7 +162,8 @@ RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, 
   RunCount count;
   count.num_beyond = std::count_if(file.rows.begin(), file.rows.end(),
                                    [&](const sweep::RunRow& row) { return row.task >= plan.size(); });
-  // An earlier --until-precision may have requested more of the plan's runs.
+  // The stored number is that of the last command. An earlier --until-precision may have requested more runs,
+  // which have rows.
   count.num_runs = std::max(stored_num_wanted(path, file.provenance, plan) + count.num_beyond,
                             static_cast<std::int64_t>(file.rows.size()));
   return count;

@@ -84,8 +84,8 @@ ObstacleArray ObstacleArrays::build(const RunParameters& run) {
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
-  // Building takes a time for every place of an obstacle. This time is 0.5 to 1 microseconds times the number
-  // of places within reach of the largest obstacle.
+  // Building takes 0.5 to 1 microseconds for each pair of two possible places of obstacles that are within
+  // reach of each other.
   constexpr double ten_builds = 10 * 1e-6;
   const double reach =
       (parameters.largest_diameter() + parameters.gap) / (parameters.smallest_diameter() + parameters.gap);

@@ -89,8 +89,8 @@ class Plan::Builder {
 
  private:
   Plan& plan_;
-  std::unordered_map<std::string, std::int64_t> known_;  // groups, by the identity of their runs
-  std::unordered_map<std::string, std::int64_t> runs_;   // first groups, by that identity in any laboratory
+  std::unordered_map<std::string, std::int64_t> known_;  // the group of each identity of runs
+  std::unordered_map<std::string, std::int64_t> runs_;   // the same without the laboratory: the first group
   std::vector<std::string> names_;                       // names of products, for messages; empty for lists
   std::int64_t num_runs_ = 0;                            // number of runs of all shards
   Seeds last_seeds_;                                     // shared by branches with the same seeds

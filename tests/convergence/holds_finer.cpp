@@ -35,7 +35,8 @@ void finish(DropletRun& run) {
   }
 }
 
-/// The middle of each edge, on the cubic through the two ends of the edge and their other neighbours.
+/// The coordinates, and between two of them the middle of the edge. The middle is on the cubic through the
+/// ends of the edge and their other neighbours.
 Eigen::ArrayXd with_middles(const Eigen::Ref<const Eigen::ArrayXd>& coarse) {
   const Eigen::Index n = coarse.size();
   Eigen::ArrayXd fine(2 * n);

@@ -479,7 +479,7 @@ class Beside(ProgramTest):
             measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
         self.assertTrue(said.getvalue().endswith("own.csv: columns without a match in the sweep: wall\n"),
                         said.getvalue())
-        # A number may be rounded. A key with one value in the sweep matches this value only.
+        # A number may be rounded. If a key has one value in the sweep, the table must have exactly this value.
         self.write("own.csv", "distance [sigma],clogged,line-tension\n3,1,1.004\n")
         self.assertEqual([one["line_tension"] for one in self.compare("own.csv", "sweep.h5")], [1])
         self.write("own.csv", "distance [sigma],clogged,vertices\n3,1,96\n")

@@ -94,7 +94,8 @@ def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
 
 
 def refuse_key(name: str, fit: Fit) -> Column:
-    """Refuses a name that is no key of curves. @throws UserError  that names the key that was probably meant"""
+    """Refuses a name over which no curve can be drawn. @throws UserError  which suggests a key with a similar name, if
+    there is one"""
     known = [column["key"] for column in fit["columns"] if "key" in column]
     hint = did_you_mean(name.replace("_", "-"), known)
     if name.replace("_", "-") not in known and hint:

@@ -133,8 +133,8 @@ def length(group: Group) -> str:
 
 
 def speed(group: Group) -> str:
-    """The speed of all runs, which is distance divided by time. If only some runs went far enough to have a speed, the
-    mean speed of these runs follows."""
+    """The total distance of all runs divided by their total time. If only some runs went far enough to have a speed of
+    their own, the mean of these speeds follows."""
     runs = rounded.count_text(group["relative_speed_runs"], "run")
     mean = None if group["relative_speed"] is None else rounded.with_error(group["relative_speed"], group["relative_speed_error"])
     if group.get(lengths.OF_ALL_RUNS) is None:

@@ -31,10 +31,10 @@ struct Mixture {
       censored_distances;  ///< distances of the runs that did not clog, up to the same distance
 };
 
-/// The clogging length and the survival curve of a mixture. Each group's distance and number of clogs per run
-/// count with the group's share. Intervals are percentiles of 2000 bootstrap resamples of seeds. Runs with
-/// the same seed stay together. For each set of groups, a resample has the same number of seeds as the sweep.
-/// So the result does not depend on whether groups share seeds.
+/// The clogging length and the survival curve of a mixture. The distance per run and the clogs per run of
+/// each group are weighted with its share. Intervals are percentiles of 2000 bootstrap resamples of seeds.
+/// Runs with the same seed stay together. For each set of groups, a resample has the same number of seeds as
+/// the sweep. So the result does not depend on whether groups share seeds.
 /// @param text  a column and the weights of its values: `diameter=2.8mm:0.3,3.2mm:0.7`
 /// @param groups  from group_runs(), not empty
 /// @throws Error if the text has another form, or if not exactly one group has each of these values

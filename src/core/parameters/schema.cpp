@@ -835,7 +835,7 @@ std::string text_of(const ParameterValue& value) {
   return "auto";
 }
 
-/// What the refusal of a parameter that does not apply is about.
+/// The keys that an error names if the parameter does not apply to the run.
 Refusal::About about_scope(const Parameter& parameter) {
   const ParameterScope* const scope = parameter.scope;
   if (scope == &polygons) return {.key = parameter.key, .named = {"model"}};

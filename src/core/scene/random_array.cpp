@@ -21,7 +21,7 @@ void find_density(RunParameters& run) {
   const std::optional<double> density = wanted_density(obstacles);
   if (!density) return;
   const double largest = largest_density(obstacles);
-  // The message prints this limit rounded, so a density that a user copies may exceed it by the last bit.
+  // A user may copy the density that the message prints. It may exceed `largest` by the last bit.
   if (*density > (1 + 1e-9) * largest)
     refuse("obstacle-density", density_text(obstacles.density),
            fmt::format(

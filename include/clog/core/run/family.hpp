@@ -29,7 +29,7 @@ struct Words<MemberEnd> {
       {MemberEnd::flowing, "flowing"}, {MemberEnd::failed, "failed"}, {MemberEnd::small, "small"}};
 };
 
-/// A place and a time, from the release of the ancestor and in its units.
+/// A place and a time relative to the release of the ancestor, in the ancestor's units.
 struct FamilyPoint {
   double distance = 0;  ///< displacement along the flow [sigma]
   double lateral = 0;   ///< displacement across the flow [sigma]

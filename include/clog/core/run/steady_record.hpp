@@ -28,7 +28,8 @@ class SteadyRecord {
   /// Call this once per check of a run. @param displacement  along the flow since release [sigma]
   void add(double time, double displacement);
 
-  /// The travel until a later time and place.
+  /// The travel from the time at which the steady speed begins to a later time. @param displacement  at that
+  /// time
   SteadyTravel until(double time, double displacement) const;
 
   void save(ByteWriter& bytes) const { bytes.put(begin_); }

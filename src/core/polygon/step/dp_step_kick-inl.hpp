@@ -37,8 +37,8 @@ struct KickSums {
 /// droplet's length and perimeter. An implicit pressure adds H n_i to the kick, where n_i is the chord turned
 /// outwards:
 ///   H = -q/(1 + q sum n_j.n_j) (sum n_j.F_j + sum G_j n_j.(R - d V_a)).
-/// Here q is the softening, and R - d V_a the force on the area with the area's drag. The last factor is the
-/// acceleration of the area.
+/// Here q is the softening, and d is half a step times the area rate. R - d V_a is the kick by the force on
+/// the area and by the area's drag. The last factor is the acceleration of the area.
 template <bool implicit_pressure>
 HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force, const KickCoefficients& k,
                            const KickSums& sums) {
