@@ -108,6 +108,8 @@ int clogrun_array(cli::CommandLine& line) {
                 " is not an array of obstacles; use clogrun " +
                 (scene->finding == Finding::sag ? "sag" : "channel"));
   const RunParameters parameters = sweep::single_run(line.settings());
+  if (parameters.model == Model::dp && parameters.dp.break_up == BreakUp::daughters)
+    console::say("clogrun: the record ends when the droplet breaks up; clogsweep follows its daughters");
   return follow_run(line, parameters, line.settings().to_config(), [&](const DropletRun& run) {
     write_obstacles(line, run);
     warn_of_untested_parameters(sweep::Plan(line.settings()));

@@ -212,7 +212,9 @@ void set_estimates(const std::vector<Tree>& trees, const std::vector<std::vector
     FamilyLine& line = lines[i];
     line.passing = is_known ? passing[i] : no_number;
     const auto [fewest, most] = std::ranges::minmax(counts[i]);
-    line.passed.number_interval = is_known && fewest < most ? percentiles(numbers[i], confidence) : unknown;
+    const bool are_all_counted = line.not_known < round_off;
+    line.passed.number_interval =
+        are_all_counted && fewest < most ? percentiles(numbers[i], confidence) : unknown;
     if (!is_known)
       line.interval = unknown;
     else if (passing[i] == 0 || passing[i] == 1)

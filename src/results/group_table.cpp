@@ -314,9 +314,13 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
     }
   }
   if (lines.size() == 1) return "";
-  return fmt::format("\ndroplets that came past x{}\n{}",
-                     are_all_shown ? "" : " (lines with the counts of the line before are left out)",
-                     console::aligned(lines));
+  const bool do_some_break =
+      std::ranges::any_of(groups, [](const Group& group) { return group.families.num_ancestors > 0; });
+  return fmt::format(
+      "\n{}{}\n{}",
+      do_some_break ? "released droplets that came past x before they broke up" : "droplets that came past x",
+      are_all_shown ? "" : " (lines with the counts of the line before are left out)",
+      console::aligned(lines));
 }
 
 std::string or_dash(double number) { return std::isnan(number) ? "-" : fmt::format("{:.2f}", number); }
@@ -349,8 +353,9 @@ std::string table_of_families(const std::vector<Group>& groups, const std::vecto
       std::vector<std::string>& words = lines.emplace_back(cells(group, parameters));
       words.push_back(fmt::format("{:g}", line.distance));
       if (has_lengths)
-        words.push_back(length_of(group) > 0 ? fmt::format("{:.4g}", line.distance * length_of(group)) : "-");
-      words.push_back(or_dash(line.passed.number));
+        words.push_back(length_of(group) > 0 ? fmt::format("{:.6g}", line.distance * length_of(group)) : "-");
+      // Droplets whose fate is not known may still pass.
+      words.push_back((line.not_known >= 0.005 ? "> " : "") + or_dash(line.passed.number));
       words.push_back(or_dash(line.passed.number_interval));
       words.push_back(or_dash(line.passed.mean));
       if (has_lengths) words.push_back(or_dash(line.passed.mean * length_of(group)));

@@ -93,7 +93,8 @@ std::vector<ResultColumn> droplet_columns(const std::vector<Group>& groups) {
 std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, double confidence) {
   const bool have_several_droplets = !droplet_columns(groups).empty();
   std::vector<ResultColumn> columns = {
-      {"lambda/mm", [](const Group& group) { return length_text(clogging_in_mm(group)); }},
+      {is_device(groups.front().first_row.parameters) ? "lambda_met/mm" : "lambda/mm",
+       [](const Group& group) { return length_text(clogging_in_mm(group)); }},
       {fmt::format("{:g} %", 100 * confidence),
        [](const Group& group) { return interval_text(clogging_in_mm(group)); }}};
   columns.insert(columns.end(), {{"all runs/(mm/s)",

@@ -64,7 +64,7 @@ def lacking(path: object, has_unfinished: bool) -> UserError:
     """The error for a sweep that has no clogged polygon in an array.
     @param has_unfinished  whether the sweep can be resumed"""
     resume = "resume it, or " if has_unfinished else ""
-    return UserError(f"{path} holds no clogged polygon in an array (soft disks do not count); "
+    return UserError(f"{path} holds no clogged polygon in an array (soft disks and daughters do not count); "
                      f"{resume}sweep with a longer max-time into another file")
 
 

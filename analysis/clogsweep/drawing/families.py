@@ -111,9 +111,9 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
         shifted = [place * style.side_by_side(index, len(members), places) for place in places]
         marker = style.MARKERS[index % len(style.MARKERS)]
         share.errorbar(shifted, passing, yerr=bars, color=colour, capsize=2)
-        number.plot(places, [line["passed"]["number"] for line in lines], color=colour)
-        for axes, abscissas, heights in ((share, shifted, passing),
-                                         (number, places, [line["passed"]["number"] for line in lines])):
+        counts = np.where(np.isnan(passing), np.nan, [line["passed"]["number"] for line in lines])
+        number.plot(places, counts, color=colour)
+        for axes, abscissas, heights in ((share, shifted, passing), (number, places, counts)):
             for abscissa, height, line in zip(abscissas, heights, lines):
                 axes.plot(abscissa, height, color=colour, marker=marker,
                           fillstyle="none" if line["not_known"] > MOST_UNKNOWN else "full")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pandas
 
 WIDTH = film.WIDTHS["mechanism"]
-STAYS = ("clogged", "small")  # droplets with these ends stay in the picture
+STAYS = ("clogged", "small", "flowing")  # droplets with these ends stay in the picture
 
 
 @dataclasses.dataclass

@@ -373,7 +373,8 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     broken = []
     if any((group.get("families") or {}).get("lines") for group in groups.members):
         broken.append(chart(families.draw(groups, None, sweep),
-                            "droplets that break up, and the sizes of those that pass"))
+                            "droplets that break up, and the sizes of those that pass; all other tables and pictures "
+                            "are of released droplets until they break up"))
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals),
             "What becomes of them": side_by_side(ends), "Families": side_by_side(broken),

@@ -19,8 +19,8 @@ struct Diameters {
   double number = 0;                ///< droplets per ancestor
   fit::Interval number_interval{};  ///< at a line, from resampled ancestors; NaN if it is unknown, or if all
                                     ///< have equal numbers
-  double area = 0;  ///< area of these droplets, divided by the area of the ancestors
-  double mean = 0;  ///< mean diameter of the droplets; NaN without any
+  double area = 0;                  ///< area of these droplets, divided by the area of the ancestors
+  double mean = 0;                  ///< mean diameter of the droplets; NaN without any
   /// Numbers and areas by class. Class i contains the diameters from i * diameter_class to (i + 1) *
   /// diameter_class; the last class also contains the diameter 1.
   std::array<double, num_diameter_classes> numbers{}, areas{};
