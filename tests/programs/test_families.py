@@ -279,6 +279,11 @@ class Families(SweepTest, Analysis):
             self.assertIn("[mm]", axes.get_xlabel())
         places = [curve.lines[0].get_xdata()[0] for curve in share.containers]
         self.assertAlmostEqual(max(places) / min(places), 2, delta=0.05, msg="10 diameters of each droplet")
+        outlet = families.common_outlet(groups.members)
+        self.assertEqual(outlet.unit, "mm")
+        self.assertAlmostEqual(outlet.of(groups.members[0]) / outlet.of(groups.members[1]),
+                               groups.members[1]["diameter_mm"] / groups.members[0]["diameter_mm"])
+        self.draw("daughters", "two.h5", "--programs", BIN, "--output", "default")
         for option, others in (("6mm", [7.5, 3.75]), ("4sigma", [4, 4])):
             self.draw("daughters", "two.h5", "--programs", BIN, "--outlet", option, "--output", "mm")
             printed = json.loads(self.succeed("clogfit", "two.h5", "--format=json", "--lines", option).stdout)["groups"]

@@ -70,9 +70,12 @@ def body() -> int:
     if arguments.task is not None:
         figure = families.draw_family(droplets, arguments.task, arguments.sweep, groups)
     else:
+        members = families.with_families(groups, arguments.sweep)
         asked: families.Outlet | None = arguments.outlet
+        if groups.are_in_mm and not asked:
+            asked = families.common_outlet(members)
         if asked:
-            for group in families.with_families(groups, arguments.sweep):
+            for group in members:
                 asked.of(group)  # refuses a place in mm if a diameter is not known
             fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{asked.place:.17g}{asked.unit}"))
             groups = fit.known.finished(arguments.sweep)

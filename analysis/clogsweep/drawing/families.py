@@ -83,6 +83,11 @@ def outlet_of(members: Sequence[Group]) -> Outlet:
     return next(filter(is_known, reversed(outlets)), outlets[0])
 
 
+def common_outlet(members: Sequence[Group]) -> Outlet:
+    """The outlet of droplets of several diameters, at one place in mm: the nearest one of outlet_of() of each group."""
+    return Outlet(min(outlet_of([group]).place * group["diameter_mm"] for group in members), "mm")
+
+
 def fate_note(outlet: Outlet, unknown: float) -> str:
     """@param unknown  largest fraction of the area whose fate at the outlet is not known"""
     of_area = f"at most {100 * unknown:.2g} % of the area is not known" if unknown > 0 else "the whole area is known"
