@@ -129,7 +129,8 @@ Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
       sample.failure = row.message;
   }
   if (sample.failure.empty())
-    sample.failure = fmt::format("its release takes longer than {:.2g} s", seconds_to_try);
+    sample.failure =
+        fmt::format("its release takes longer than {:.2g} s; a narrower box takes less", seconds_to_try);
   sample.source = fmt::format("tried for {:.2g} s in total", elapsed());
   return sample;
 }

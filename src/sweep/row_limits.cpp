@@ -116,6 +116,17 @@ double repetition_length(const RunRow& row) {
 
 bool has_met_repetition(const RunRow& row) { return row.distance > repetition_length(row); }
 
+/// Suggests an array of this length. Wide arrays take long to make, and need no width for one droplet
+/// (docs/notes/2026-11-22-long-arrays.md).
+std::string enough_boxes(double length, double box) {
+  constexpr double narrow = 45, too_wide = 100;
+  std::string text = fmt::format("boxes={:.4g} is long enough", std::ceil(length / box));
+  if (box > too_wide)
+    text += fmt::format("; box={:g} boxes={:.4g} is, too, and takes less time and memory", narrow,
+                        std::ceil(length / narrow));
+  return text;
+}
+
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
   double farthest = 0, shortest_length = 0,
@@ -139,7 +150,7 @@ std::string possible_repetition(const Plan& plan) {
       "again: terminal-speed*max-time is up to {:.4g}, boxes*box {:.4g}; {}",
       num_groups, count_text(plan.num_groups(), "parameter set"), farthest, shortest_length,
       is_of_user ? "give a file of circles that is as long, or a shorter max-time"
-                 : fmt::format("boxes={:.4g} is long enough", std::ceil(most_boxes)));
+                 : enough_boxes(farthest, farthest / most_boxes));
 }
 
 std::string text_of(const Stretch& stretch) {

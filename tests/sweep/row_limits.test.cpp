@@ -108,6 +108,9 @@ TEST(Repetition, IsForeseenFromTheLongestTime) {
       possible_repetition(limits_plan({{"box", "20,500"}, {"max-time", "1e3,1e4"}})),
       "droplets of 2 of 4 parameter sets may travel farther than the length of their array and meet the same "
       "obstacles again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
+  EXPECT_TRUE(
+      possible_repetition(limits_plan({{"box", "500"}, {"max-time", "2e5"}}))
+          .ends_with("boxes=12 is long enough; box=45 boxes=134 is, too, and takes less time and memory"));
 }
 
 std::vector<std::string> limits_with(std::vector<Obstacle> circles, const Keys& keys) {
