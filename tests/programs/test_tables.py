@@ -207,9 +207,9 @@ class Points(ProgramTest):
         head, cells = "line-tension", ["0.5", "", "2", "", "3"]
         for ending in ("\n", "\r\n"):
             blank = self.plan(*QUICK, "seeds=1", "--points",
-                                 self.write("p.csv", ending.join([head, "0.5", "", "2", "3", "", ""])))
+                              self.write("p.csv", ending.join([head, "0.5", "", "2", "3", "", ""])))
             quoted = self.plan(*QUICK, "seeds=1", "--points",
-                                  self.write("p.csv", ending.join([head, "0.5", '""', "2", "3"])))
+                               self.write("p.csv", ending.join([head, "0.5", '""', "2", "3"])))
             self.assertIn("# 4 tasks: 4 parameter sets", blank)
             self.assertEqual([line for line in blank.splitlines() if not line.startswith("#")],
                              [line for line in quoted.splitlines() if not line.startswith("#")])
@@ -226,7 +226,7 @@ class Points(ProgramTest):
                            ("comma", "obstacle-diameter;seeds\n0,4mm;1\n0,8 mm;2\n1,5e3um;3\n")):
             self.write("p.csv", text)
             printed[name] = self.plan("box=20", "obstacle-gap=0.4", "vertices=64", "max-time=1", "--lab",
-                                         "lab.cfg", "--points", "p.csv").splitlines()[:4]
+                                      "lab.cfg", "--points", "p.csv").splitlines()[:4]
         self.assertEqual(printed["comma"], printed["point"])
         self.refuse("clogsweep", "box=20", "obstacle-gap=0.4", "--lab", "lab.cfg", "--points",
                     self.write("p.csv", "obstacle-diameter;seeds\n1,350mm;1\n"), "--dry-run",

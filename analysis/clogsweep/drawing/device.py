@@ -284,7 +284,7 @@ ROUND_OFF = 1e-6  # of the release of a droplet
 
 def has_daughters(rows: Records) -> bool:
     """Whether runs follow the daughters of droplets that break up."""
-    return "break_up" in rows.dtype.names and bool((rows["break_up"] == b"daughters").any())
+    return "break_up" in (rows.dtype.names or ()) and bool((rows["break_up"] == b"daughters").any())
 
 
 def came_past(place: Place) -> tuple[Numbers, Numbers]:
