@@ -243,6 +243,8 @@ void print_tasks(const sweep::Plan& plan, PreviewFormat format) {
                  number == 1 ? "1 task is" : fmt::format("{} tasks are", number),
                  number == 1 ? "run" : "runs", number == 1 ? "is computed" : "are computed");
   add_lattices(preview, plan);
+  for (const std::string& words : sweep::limits_of_results(plan))
+    preview.line("# {}", console::printable(words));
   print(preview, format);
 }
 
@@ -256,8 +258,6 @@ void print_refusal(const Refusal& refusal) {
 int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
                const sweep::JobFactory& jobs, PreviewFormat format) {
   Preview preview{.text = "", .json = {}};
-  for (const std::string& words : sweep::limits_of_results(plan))
-    preview.line("# {}", console::printable(words));
   const StoredSample stored = stored_runs(plan, output);
   const bool is_done = stored.num_done == plan.num_runs();
   preview.json = {{"runs", plan.num_runs()}, {"finished", stored.num_done}, {"spent", stored.seconds / hour}};

@@ -92,7 +92,8 @@ class EveryKey(Sweeps):
 
     def test_two_parameters_make_curves_of_the_one_over_the_other(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,2,3", "relative-drag=0.5,1", "seeds=1", "--output", "s.h5")
-        self.assertEqual([(label, len(members)) for label, members in self.fit().curves()], [("$c = 0.5$", 3), ("$c = 1$", 3)])
+        self.assertEqual([(label, len(members)) for label, members in self.fit().curves()],
+                         [("relative drag $0.5$", 3), ("relative drag $1$", 3)])
 
 
 if __name__ == "__main__":

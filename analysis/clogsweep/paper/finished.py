@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas
 
 FOLDER = programs.JOBS.parent / "docs" / "gallery" / "rows"
-# Files from before daughters lack these columns. Disks do not break up, and have no values.
+# Files from before daughters lack these columns. Disks do not break up, so they have no neck.
 BREAKING = ["break_up_neck", "speed_exponent"]
 # The parameters that differ between the runs of at least one sweep of jobs/figures.
 PARAMETERS = ["model", "preset", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter",
@@ -97,18 +97,19 @@ def read(name: str, folder: pathlib.Path = FOLDER) -> Finished:
     except (OSError, EOFError, ValueError) as error:
         raise UserError(f"cannot read the rows of {name} in {folder} ({error}); check them out again") from error
     add_breaking(rows)
-    for name in BREAKING:
-        for group in answer["groups"]:
-            group.setdefault(name, None if group["model"] == "sp" else 0.0)
+    for group in answer["groups"]:
+        group.setdefault("break_up_neck", None if group["model"] == "sp" else 0.0)
+        group.setdefault("speed_exponent", 0.0)
     rows.insert(0, "task", range(len(rows)))
     return Finished(answer, rows)
 
 
 def add_breaking(rows: pandas.DataFrame) -> None:
     """Adds parameters of break-up to rows of older programs, in which no droplet broke up."""
-    for name in BREAKING:
-        if name not in rows:
-            rows[name] = (rows["model"] == "sp").map({True: math.nan, False: 0.0})
+    if "break_up_neck" not in rows:
+        rows["break_up_neck"] = (rows["model"] == "sp").map({True: math.nan, False: 0.0})
+    if "speed_exponent" not in rows:
+        rows["speed_exponent"] = 0.0
 
 
 def names_in(folder: pathlib.Path = FOLDER) -> list[str]:
