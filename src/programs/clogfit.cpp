@@ -195,9 +195,7 @@ int clogfit(int argc, const char* const* argv) {
                 : format == "json"
                     ? results::to_json(groups, confidence, sweep.provenance, mixture ? &*mixture : nullptr)
                     : results::to_text(groups, confidence, shared));
-  if (format == "csv" && std::ranges::any_of(groups, [](const results::Group& group) {
-        return group.families.num_ancestors > 0;
-      }))
+  if (format == "csv" && results::have_families(groups))
     console::say("clogfit: the table of daughters is not in CSV; --format text or json has it");
   if (format == "text" && line.has("pool"))
     std::cout << fmt::format("   groups that differ only in {} are joined (--pool)\n", line.get("pool"));

@@ -44,7 +44,7 @@ std::string column_notes(const std::vector<Group>& groups) {
     text +=
         "lambda_b: mean distance before break-up. Broken droplets are censored in lambda, clogged ones in "
         "lambda_b\n";
-  if (std::ranges::any_of(groups, [](const Group& group) { return group.families.num_ancestors > 0; }))
+  if (have_families(groups))
     text +=
         "daughters: only the table with droplets per ancestor counts them. lambda, lambda_b, clogs and "
         "droplets "

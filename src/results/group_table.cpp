@@ -314,13 +314,11 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
     }
   }
   if (lines.size() == 1) return "";
-  const bool do_some_break =
-      std::ranges::any_of(groups, [](const Group& group) { return group.families.num_ancestors > 0; });
-  return fmt::format(
-      "\n{}{}\n{}",
-      do_some_break ? "released droplets that came past x before they broke up" : "droplets that came past x",
-      are_all_shown ? "" : " (lines with the counts of the line before are left out)",
-      console::aligned(lines));
+  return fmt::format("\n{}{}\n{}",
+                     have_families(groups) ? "released droplets that came past x before they broke up"
+                                           : "droplets that came past x",
+                     are_all_shown ? "" : " (lines with the counts of the line before are left out)",
+                     console::aligned(lines));
 }
 
 std::string or_dash(double number) { return std::isnan(number) ? "-" : fmt::format("{:.2f}", number); }

@@ -358,6 +358,10 @@ static Families families_of(const std::vector<const sweep::RunRow*>& runs, doubl
   return families_of(families, confidence, all_lines);
 }
 
+bool have_families(const std::vector<Group>& groups) {
+  return std::ranges::any_of(groups, [](const Group& group) { return group.families.num_ancestors > 0; });
+}
+
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance,
                               double dwell, std::span<const sweep::Column* const> pooled,
                               const LinesOf& lines) {

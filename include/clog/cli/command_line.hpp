@@ -58,11 +58,11 @@ class CommandLine {
   double get_share(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero
   double get_positive(const std::string& option) const;
+  using Reworded = std::function<std::string(const std::string& text)>;
   /// The positive numbers of an option that takes a list. The list is written like the list of a key:
   /// `0.1,0.2` or `log(0.1,1,5)`. Empty if the option was not given.
   /// @param reworded  changes the text before it is read, for instance its units; may throw Error
   /// @throws Error if a number is not above zero
-  using Reworded = std::function<std::string(const std::string& text)>;
   std::vector<double> get_positives(const std::string& option, const Reworded& reworded = {}) const;
   /// The option's value, or its default. @throws Error if it is not a whole number in the range
   std::int64_t get_whole(const std::string& option, std::int64_t otherwise, std::int64_t least,

@@ -144,6 +144,8 @@ double terminal_speed_in_laboratory(const Group& group);
 double failures_per_length(const Group& group);
 /// Whether there are user-supplied circles with an entrance or an exit.
 bool is_device(const RunParameters& run);
+/// Whether some of the groups have families.
+bool have_families(const std::vector<Group>& groups);
 
 /// Whether a run has an outcome: it is intact, and did not fail at an unknown distance.
 bool is_observed(const sweep::RunRow& run);
@@ -153,6 +155,7 @@ bool is_observed(const sweep::RunRow& run);
 /// is nullopt if the droplet met no obstacle.
 std::optional<fit::Observation> observation_of(const sweep::RunRow& run);
 
+/// Lines across the flow for the runs with the parameters of a row [sigma].
 using LinesOf = std::function<std::vector<double>(const sweep::RunRow&)>;
 
 /// Groups rows by all parameters except the seed. The groups are in the order of their findings, then of

@@ -783,8 +783,8 @@ std::vector<Parameter> verdict_entries() {
       entry("break-up", [](auto& run) -> auto& { return run.dp.break_up; },
             {.column = "break_up",
              .meaning = "end: a run ends when its droplet breaks up; daughters: the run continues with all "
-                        "daughters, which needs "
-                        "near-wall-drag=0, side-walls=off and walls that the droplet does not wet",
+                        "daughters, which needs near-wall-drag=0, side-walls=off and walls that the droplet "
+                        "does not wet",
              .scope = &polygons,
              .before = "end"}),
       entry("smallest-daughter", [](auto& run) -> auto& { return run.dp.smallest_daughter; },
