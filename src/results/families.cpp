@@ -116,12 +116,11 @@ std::vector<int> numbers_at(double distance, const std::vector<Tree>& trees) {
   return numbers;
 }
 
-/// Product-limit estimates at the lines.
-/// @param leaves  of all families
-/// @param times  number of times that each family counts
+/// The product-limit estimator of the share of the area that passes a line.
 class ProductLimit {
  public:
-  ProductLimit(const std::vector<std::vector<Leaf>>& leaves) {
+  /// @param leaves  of each family
+  explicit ProductLimit(const std::vector<std::vector<Leaf>>& leaves) {
     for (std::size_t family = 0; family < leaves.size(); ++family)
       for (const Leaf& leaf : leaves[family])
         steps_.push_back({leaf.reach, area_of(*leaf.member), leaf.has_stopped(), family});
@@ -129,6 +128,7 @@ class ProductLimit {
   }
 
   /// Shares that pass the lines. Beyond the last droplet the share stays as it is.
+  /// @param times  number of times that each family counts
   std::vector<double> at(const std::vector<double>& lines, const std::vector<int>& times) const {
     double at_risk = 0;
     for (const Step& step : steps_) at_risk += times[step.family] * step.area;

@@ -47,10 +47,8 @@ std::string column_notes(const std::vector<Group>& groups) {
   if (have_families(groups))
     text +=
         "daughters: only the table with droplets per ancestor counts them. lambda, lambda_b, clogs and "
-        "droplets "
-        "that came past x are of released droplets until they break up. --dwell and --from-distance do not "
-        "change "
-        "the table of daughters\n";
+        "droplets that came past x are of released droplets until they break up. --dwell and "
+        "--from-distance do not change the table of daughters\n";
   if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
         "passed: droplets that reached the exit. They count as not clogged up to there, so lambda may "

@@ -360,9 +360,8 @@ std::vector<Column> columns_after_dwells() {
       member(
           "friction_use", [](auto& row) -> auto& { return row.hold.friction_use; }, result, "",
           "fraction of the largest possible friction that holds the clogged polygon on a post, as moments "
-          "about "
-          "the post's centre; the maximum over all posts that give at least a tenth of its support; NaN for "
-          "other droplets"),
+          "about the post's centre; the maximum over all posts that give at least a tenth of its support; "
+          "NaN for other droplets"),
       member(
           "largest_shape_parameter",
           [](auto& row) -> auto& { return row.passage.largest_shape_parameter.value; }, result, "",
