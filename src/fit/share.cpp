@@ -4,7 +4,7 @@
 
 namespace clog::fit {
 
-Interval share_interval(int num_hits, int num_trials, double confidence) {
+Interval share_interval(double num_hits, double num_trials, double confidence) {
   require_confidence(confidence);
   if (num_trials == 0) return {0, 1};
   using Binomial = boost::math::binomial_distribution<>;

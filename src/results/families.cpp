@@ -10,6 +10,9 @@
 #include <random>
 #include <string>
 
+#include "clog/fit/percentiles.hpp"
+#include "clog/fit/share.hpp"
+
 namespace clog::results {
 namespace {
 
@@ -24,10 +27,9 @@ struct Leaf {
   const Member* member;
   double reach;  ///< [sigma]
 
-  /// Whether the droplet certainly goes no farther.
-  bool has_stopped() const {
-    return member->status == MemberEnd::clogged || member->status == MemberEnd::small;
-  }
+  /// Whether the droplet certainly goes no farther. Nobody knows this of a droplet that was too small to be
+  /// followed.
+  bool has_stopped() const { return member->status == MemberEnd::clogged; }
 };
 
 /// One family as a tree.
@@ -35,7 +37,11 @@ class Tree {
  public:
   explicit Tree(const ReleasedFamily& family) : release_(family.release) {
     for (const Member& member : family.members) members_.emplace(member.path, &member);
+    add_leaves("", release_);
   }
+
+  double release() const { return release_; }
+  const std::vector<Leaf>& leaves() const { return leaves_; }
 
   /// Calls visit(member, true) for each droplet that is the first of its line of descent to pass the line.
   /// Calls visit(member, false) for each droplet that ends before the line.
@@ -52,27 +58,22 @@ class Tree {
     for (const char part : {'0', '1'}) at_line(distance, visit, path + part);
   }
 
-  std::vector<Leaf> leaves() const {
-    std::vector<Leaf> all;
-    add_leaves("", release_, all);
-    return all;
-  }
-
  private:
   std::map<std::string, const Member*> members_;
   double release_;
+  std::vector<Leaf> leaves_;
 
   double reach_of(const Member& member) const {
     return release_ + std::max(member.birth.distance, member.end.distance);
   }
 
-  void add_leaves(const std::string& path, double reach, std::vector<Leaf>& all) const {
+  void add_leaves(const std::string& path, double reach) {
     const auto found = members_.find(path);
     if (found == members_.end()) return;
     const Member& member = *found->second;
     reach = std::max(reach, reach_of(member));
-    if (member.status != MemberEnd::broken) all.push_back({&member, reach});
-    for (const char part : {'0', '1'}) add_leaves(path + part, reach, all);
+    if (member.status != MemberEnd::broken) leaves_.push_back({&member, reach});
+    for (const char part : {'0', '1'}) add_leaves(path + part, reach);
   }
 };
 
@@ -95,59 +96,46 @@ void make_means(Diameters& all, double num_ancestors) {
 }
 
 /// Lines of 10, 20, 50, 100, ... sigma, and more lines.
-std::vector<double> lines_up_to(double farthest, std::span<const double> more_lines) {
+/// @param first  the place of the first release; no line is upstream of it
+std::vector<double> lines_between(double first, double farthest, std::span<const double> more_lines) {
   std::vector<double> lines(more_lines.begin(), more_lines.end());
   for (double decade = 10; decade <= farthest; decade *= 10)
     for (const double factor : {1, 2, 5})
       if (factor * decade <= farthest) lines.push_back(factor * decade);
+  std::erase_if(lines, [first](double line) { return line <= first; });
   std::ranges::sort(lines);
   const auto is_same = [](double one, double other) { return other - one < round_off; };
   lines.erase(std::unique(lines.begin(), lines.end(), is_same), lines.end());
   return lines;
 }
 
-/// Number of droplets of each family that pass a line.
-std::vector<int> numbers_at(double distance, const std::vector<Tree>& trees) {
-  std::vector<int> numbers;
-  for (const Tree& tree : trees) {
-    numbers.push_back(0);
-    tree.at_line(distance, [&](const Member&, bool passes) { numbers.back() += passes; });
-  }
-  return numbers;
-}
-
 /// The product-limit estimator of the share of the area that passes a line.
 class ProductLimit {
  public:
-  /// @param leaves  of each family
-  explicit ProductLimit(const std::vector<std::vector<Leaf>>& leaves) {
-    for (std::size_t family = 0; family < leaves.size(); ++family)
-      for (const Leaf& leaf : leaves[family])
+  /// @param families  those released before the line
+  ProductLimit(double line, const std::vector<const Tree*>& families) : line_(line) {
+    for (std::size_t family = 0; family < families.size(); ++family)
+      for (const Leaf& leaf : families[family]->leaves())
         steps_.push_back({leaf.reach, area_of(*leaf.member), leaf.has_stopped(), family});
     std::ranges::sort(steps_, {}, &Step::reach);
   }
 
-  /// Shares that pass the lines. Beyond the last droplet the share stays as it is.
-  /// @param times  number of times that each family counts
-  std::vector<double> at(const std::vector<double>& lines, const std::vector<int>& times) const {
+  /// The share that passes. @param times  number of times that each family counts
+  double share(const std::vector<int>& times) const {
     double at_risk = 0;
     for (const Step& step : steps_) at_risk += times[step.family] * step.area;
-    std::vector<double> passing;
-    double share = 1;
-    auto step = steps_.begin();
-    for (const double line : lines) {
-      for (; step != steps_.end() && step->reach < line - round_off; ++step) {
-        const double area = times[step->family] * step->area;
-        if (step->is_end && at_risk > 0) share *= std::max(0.0, 1 - area / at_risk);
-        at_risk -= area;
-      }
-      passing.push_back(share);
+    double passing = 1;
+    for (const Step& step : steps_) {
+      if (step.reach >= line_ - round_off) break;
+      const double area = times[step.family] * step.area;
+      if (step.is_end && at_risk > 0) passing *= std::max(0.0, 1 - area / at_risk);
+      at_risk -= area;
     }
     return passing;
   }
 
-  /// Place of the last droplet [sigma].
-  double last() const { return steps_.back().reach; }
+  /// Whether a droplet was followed to the line.
+  bool has_reached_line() const { return steps_.back().reach >= line_ - round_off; }
 
  private:
   struct Step {
@@ -155,80 +143,64 @@ class ProductLimit {
     bool is_end;
     std::size_t family;
   };
+  double line_;
   std::vector<Step> steps_;
 };
 
-/// Percentiles of resampled values. NaN if there are too few of them.
-fit::Interval percentiles(std::vector<double> values, double confidence) {
-  std::ranges::sort(values);
-  const double last = static_cast<double>(values.size()) - 1, tail = (1 - confidence) / 2 * last;
-  if (tail < 1) return {no_number, no_number};
-  return {values[static_cast<std::size_t>(tail)], values[static_cast<std::size_t>(std::ceil(last - tail))]};
-}
-
-/// Interval of a share that is 0 or 1 in all of some number of families, by Clopper and Pearson.
-fit::Interval without_variation(double share, int num_families, double confidence) {
-  if (num_families == 0) return {no_number, no_number};
-  const double certain = std::pow((1 - confidence) / 2, 1.0 / num_families);
-  return share == 0 ? fit::Interval{0, 1 - certain} : fit::Interval{certain, 1};
-}
-
-/// Number of families of which all area passes a line, or of which all area ends before it.
-int num_alike(const std::vector<std::vector<Leaf>>& leaves, double distance, bool pass) {
-  return static_cast<int>(std::ranges::count_if(leaves, [&](const std::vector<Leaf>& family) {
-    return std::ranges::all_of(family, [&](const Leaf& leaf) {
-      const bool has_passed = leaf.reach >= distance - round_off;
-      return pass ? has_passed : !has_passed && leaf.has_stopped();
+/// Number of families of which each droplet is known to pass the line, or to end before it.
+int num_known(double line, const std::vector<const Tree*>& families) {
+  return static_cast<int>(std::ranges::count_if(families, [line](const Tree* family) {
+    return std::ranges::all_of(family->leaves(), [line](const Leaf& leaf) {
+      return leaf.reach >= line - round_off || leaf.has_stopped();
     });
   }));
 }
 
-/// Sets shares that pass, and intervals from resampled ancestors.
-void set_estimates(const std::vector<Tree>& trees, const std::vector<std::vector<Leaf>>& leaves,
-                   double confidence, const std::vector<double>& distances, std::vector<FamilyLine>& lines) {
+/// Sets the share that passes, and intervals from resampled families.
+/// @param families  those released before the line
+void set_estimates(const std::vector<const Tree*>& families, double confidence, FamilyLine& line) {
   constexpr int num_resamples = 2000;
-  const ProductLimit estimator(leaves);
-  const std::size_t num_families = trees.size();
-  const std::vector<double> passing = estimator.at(distances, std::vector<int>(num_families, 1));
+  constexpr std::size_t enough_families = 10;  // Percentiles of fewer families are too narrow.
+  const std::size_t num_families = families.size();
+  const ProductLimit estimator(line.distance, families);
+  const double passing = estimator.share(std::vector<int>(num_families, 1));
+  std::vector<int> counts;  // droplets of each family that pass
+  for (const Tree* family : families) {
+    counts.push_back(0);
+    family->at_line(line.distance, [&](const Member&, bool passes) { counts.back() += passes; });
+  }
   std::seed_seq sequence{std::uint32_t{0x66616d69}};  // fixed, so that the output is reproducible
   boost::random::mt19937_64 engine(sequence);
   boost::random::uniform_int_distribution<std::size_t> draw(0, num_families - 1);
-  std::vector<std::vector<double>> shares(lines.size()), numbers(lines.size());
-  std::vector<std::vector<int>> counts;
-  for (const double distance : distances) counts.push_back(numbers_at(distance, trees));
+  std::vector<double> shares, numbers;
   for (int i = 0; i < num_resamples; ++i) {
     std::vector<int> times(num_families);
     for (std::size_t j = 0; j < num_families; ++j) ++times[draw(engine)];
-    const std::vector<double> drawn = estimator.at(distances, times);
-    for (std::size_t line = 0; line < lines.size(); ++line) {
-      shares[line].push_back(drawn[line]);
-      numbers[line].push_back(std::inner_product(times.begin(), times.end(), counts[line].begin(), 0.0) /
-                              static_cast<double>(num_families));
-    }
+    shares.push_back(estimator.share(times));
+    numbers.push_back(std::inner_product(times.begin(), times.end(), counts.begin(), 0.0) /
+                      static_cast<double>(num_families));
   }
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const bool is_known = passing[i] == 0 || distances[i] <= estimator.last() + round_off;
-    const fit::Interval unknown{no_number, no_number};
-    FamilyLine& line = lines[i];
-    line.passing = is_known ? passing[i] : no_number;
-    const auto [fewest, most] = std::ranges::minmax(counts[i]);
-    const bool are_all_counted = line.not_known < round_off;
-    line.passed.number_interval =
-        are_all_counted && fewest < most ? percentiles(numbers[i], confidence) : unknown;
-    if (!is_known)
-      line.interval = unknown;
-    else if (passing[i] == 0 || passing[i] == 1)
-      line.interval =
-          without_variation(passing[i], num_alike(leaves, distances[i], passing[i] == 1), confidence);
-    else
-      line.interval = num_families > 1 ? percentiles(shares[i], confidence) : unknown;
-  }
+  const bool are_enough = num_families >= enough_families;
+  const fit::Interval unknown{no_number, no_number};
+  line.passed.number_interval = are_enough && line.not_known < round_off
+                                    ? fit::percentile_interval(numbers, num_families, confidence)
+                                    : unknown;
+  line.passing = line.interval.lower = line.interval.upper = no_number;
+  if (passing > 0 && !estimator.has_reached_line()) return;
+  line.passing = passing;
+  if (are_enough) line.interval = fit::percentile_interval(shares, num_families, confidence);
+  const int trials = num_known(line.distance, families);
+  if (std::isnan(line.interval.lower) && trials > 0)
+    line.interval = fit::share_interval(passing * trials, trials, confidence);
 }
 
-FamilyLine line_at(double distance, const std::vector<Tree>& trees) {
-  FamilyLine line{.distance = distance, .passed = {}};
+FamilyLine line_at(double distance, const std::vector<Tree>& trees, double confidence) {
+  std::vector<const Tree*> families;
   for (const Tree& tree : trees)
-    tree.at_line(distance, [&](const Member& member, bool passes) {
+    if (tree.release() < distance) families.push_back(&tree);
+  FamilyLine line{.distance = distance, .passed = {}};
+  for (const Tree* tree : families)
+    tree->at_line(distance, [&](const Member& member, bool passes) {
       if (passes)
         add(member, line.passed);
       else if (member.status == MemberEnd::clogged)
@@ -238,9 +210,10 @@ FamilyLine line_at(double distance, const std::vector<Tree>& trees) {
       else
         line.not_known += area_of(member);
     });
-  const auto num_ancestors = static_cast<double>(trees.size());
+  const auto num_ancestors = static_cast<double>(families.size());
   make_means(line.passed, num_ancestors);
   for (double* area : {&line.clogged, &line.small, &line.not_known}) *area /= num_ancestors;
+  set_estimates(families, confidence, line);
   return line;
 }
 
@@ -252,13 +225,12 @@ Families families_of(std::span<const ReleasedFamily> families, double confidence
   Families found;
   if (families.empty()) return found;
   std::vector<Tree> trees;
-  std::vector<std::vector<Leaf>> leaves;
-  double farthest = 0, num_daughters = 0;
+  double first = std::numeric_limits<double>::infinity(), farthest = 0, num_daughters = 0;
   for (const ReleasedFamily& family : families) {
     trees.emplace_back(family);
-    leaves.push_back(trees.back().leaves());
     num_daughters += static_cast<double>(family.members.size() - 1);
-    for (const Leaf& leaf : leaves.back()) {
+    first = std::min(first, family.release);
+    for (const Leaf& leaf : trees.back().leaves()) {
       farthest = std::max(farthest, leaf.reach);
       if (leaf.member->status == MemberEnd::clogged) add(*leaf.member, found.clogged);
     }
@@ -267,9 +239,8 @@ Families families_of(std::span<const ReleasedFamily> families, double confidence
   found.num_ancestors = static_cast<int>(families.size());
   found.num_daughters = num_daughters / num_ancestors;
   make_means(found.clogged, num_ancestors);
-  const std::vector<double> distances = lines_up_to(farthest, more_lines);
-  for (const double distance : distances) found.lines.push_back(line_at(distance, trees));
-  set_estimates(trees, leaves, confidence, distances, found.lines);
+  for (const double distance : lines_between(first, farthest, more_lines))
+    found.lines.push_back(line_at(distance, trees, confidence));
   return found;
 }
 

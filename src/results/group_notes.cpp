@@ -48,7 +48,8 @@ std::string column_notes(const std::vector<Group>& groups) {
     text +=
         "daughters: only the table with droplets per ancestor counts them. lambda, lambda_b, clogs and "
         "droplets that came past x are of released droplets until they break up. --dwell and "
-        "--from-distance do not change the table of daughters\n";
+        "--from-distance do not change the table of daughters. Droplets in small are not counted in "
+        "droplets; for passing, their fate is unknown, like that of droplets in not known\n";
   if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
         "passed: droplets that reached the exit. They count as not clogged up to there, so lambda may "

@@ -361,11 +361,14 @@ std::string table_of_families(const std::vector<Group>& groups, const std::vecto
         words.push_back(or_dash(area));
       words.push_back(or_dash(line.interval));
     }
-  if (lines.size() == 1) return "";
-  return fmt::format(
-      "\ndroplets per ancestor that passed x, their mean diameter, and shares of the ancestors' "
-      "area\n{}",
-      console::aligned(lines));
+  if (lines.size() > 1)
+    return fmt::format(
+        "\ndroplets per ancestor that passed x, their mean diameter, and shares of the ancestors' "
+        "area\n{}",
+        console::aligned(lines));
+  return have_families(groups) ? "\nno droplet came 10 sigma from its release, where the first line for "
+                                 "daughters is; --lines x1,x2,... counts at nearer lines\n"
+                               : "";
 }
 
 /// Defines a clog, if resting droplets count as clogged, too; otherwise returns an empty text.

@@ -21,6 +21,7 @@
 #include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/split.hpp"
 #include "clog/core/tools/wording.hpp"
+#include "clog/fit/percentiles.hpp"
 #include "clog/results/selection.hpp"
 #include "clog/results/usual_parameters.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -216,14 +217,6 @@ std::vector<std::vector<std::size_t>> strata_of(const std::vector<Size>& sizes, 
   return all;
 }
 
-/// Percentiles. Unknown if all values are equal, as for a single seed, or too few for this confidence.
-fit::Interval interval_of(std::vector<double>& values, double confidence) {
-  const double last = static_cast<double>(values.size() - 1), tail = (1 - confidence) / 2 * last;
-  std::ranges::sort(values);
-  if (tail < 1 || values.front() == values.back()) return {unknown, unknown};
-  return {values[static_cast<std::size_t>(tail)], values[static_cast<std::size_t>(std::ceil(last - tail))]};
-}
-
 /// Sets the intervals.
 void resample(const std::vector<Size>& sizes, std::size_t num_seeds, double confidence, Mixture& mixture) {
   std::vector<double> places;
@@ -243,9 +236,9 @@ void resample(const std::vector<Size>& sizes, std::size_t num_seeds, double conf
     lengths.push_back(one.length);
     for (std::size_t j = 0; j < places.size(); ++j) probabilities[j].push_back(one.probabilities[j]);
   }
-  mixture.interval = interval_of(lengths, confidence);
+  mixture.interval = fit::percentile_interval(lengths, num_seeds, confidence);
   for (std::size_t j = 0; j < places.size(); ++j)
-    mixture.survival[j].interval = interval_of(probabilities[j], confidence);
+    mixture.survival[j].interval = fit::percentile_interval(probabilities[j], num_seeds, confidence);
 }
 
 }  // namespace

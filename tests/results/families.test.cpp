@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,7 @@ TEST(Families, CountTheAreaOfAFailedDaughterAsNotKnown) {
   EXPECT_NEAR(line.not_known, 0.5, 1e-15);
   EXPECT_NEAR(line.passed.area + line.clogged + line.small + line.not_known, 1, 1e-15);
   EXPECT_EQ(found.clogged.number, 0);
-  EXPECT_NEAR(line.passing, 0.75, 1e-15) << "a quarter of all was too small at 30";
+  EXPECT_EQ(line.passing, 1) << "no droplet is known to have stopped";
 }
 
 TEST(Families, HaveNoLineBeyondTheFarthestDroplet) {
@@ -99,6 +100,47 @@ TEST(Families, AreCountedAtMoreLinesAndFromTheRelease) {
   EXPECT_EQ(in_device.lines[1].passed.number, 1) << "the ancestor broke up at 19";
 }
 
+/// A line counts only droplets that came from upstream.
+TEST(Families, CountAtALineOnlyIfTheyWereReleasedBeforeIt) {
+  const double lines[] = {4, 12};
+  const std::vector<ReleasedFamily> families = {
+      {{member("", 1, 0, 2, MemberEnd::clogged)}, 8},
+      {{member("", 1, 0, 60, MemberEnd::flowing)}, 8},
+      {{member("", 1, 0, 60, MemberEnd::flowing)}, 15},
+  };
+  const Families found = families_of(families, 0.95, lines);
+  EXPECT_EQ(found.lines[0].distance, 10) << "a line at 4 is upstream of all releases";
+  EXPECT_EQ(found.lines[1].distance, 12);
+  EXPECT_EQ(found.lines[1].passed.number, 0.5) << "one of two";
+  EXPECT_EQ(found.lines[1].passing, 0.5);
+  EXPECT_NEAR(found.lines[2].passed.number, 2.0 / 3, 1e-15) << "at 20";
+  for (const FamilyLine& line : found.lines)
+    EXPECT_NEAR(line.passed.area + line.clogged + line.small + line.not_known, 1, 1e-14);
+}
+
+/// Which droplets are followed is the user's choice. If those that are not would pass like the others, the
+/// share must not depend on this choice.
+TEST(Families, GiveAShareThatDoesNotDependOnTheSmallestDaughter) {
+  std::vector<ReleasedFamily> all(40), some(40);
+  for (int i = 0; i < 40; ++i) {
+    for (std::vector<ReleasedFamily>* families : {&all, &some}) {
+      const bool is_small = families == &some && i % 2 == 0;
+      const double half = std::sqrt(0.5);
+      (*families)[i].members = {
+          member("", 1, 0, 5, MemberEnd::broken),
+          member("0", half, 5, i % 4 < 2 ? 8 : 20, i % 4 < 2 ? MemberEnd::clogged : MemberEnd::flowing),
+          member("1", half, 5, is_small ? 5 : (i / 2 % 4 < 2 ? 8 : 20),
+                 is_small        ? MemberEnd::small
+                 : i / 2 % 4 < 2 ? MemberEnd::clogged
+                                 : MemberEnd::flowing)};
+    }
+  }
+  const FamilyLine of_all = families_of(all, 0.95).lines.front(),
+                   of_some = families_of(some, 0.95).lines.front();
+  EXPECT_NEAR(of_some.small, 0.25, 1e-12);
+  EXPECT_NEAR(of_all.passing, of_some.passing, 0.01);
+}
+
 TEST(Families, AtALineBeyondAllDropletsAreUnknownUnlessAllEnded) {
   const std::vector<double> far = {1000};
   const std::vector<ReleasedFamily> moving = {{{member("", 1, 0, 30, MemberEnd::flowing)}},
@@ -121,9 +163,46 @@ TEST(Families, ThatAllPassHaveTheLowerBoundOfABinomialShare) {
   EXPECT_TRUE(std::isnan(line.passed.number_interval.lower)) << "all have one droplet";
 }
 
-TEST(Families, OfOneAncestorHaveNoInterval) {
-  const std::vector<ReleasedFamily> families = {{family()}};
-  EXPECT_TRUE(std::isnan(families_of(families, 0.95).lines.back().interval.lower));
+/// Two families as if each passed whole or not at all: nothing narrower is known.
+TEST(Families, ThatAreFewHaveTheIntervalOfABinomialShare) {
+  std::vector<Member> members = family();
+  members[3].end.distance = 45;
+  members[3].status = members[4].status = MemberEnd::clogged;
+  const std::vector<ReleasedFamily> families(2, {members});
+  const FamilyLine line = families_of(families, 0.95).lines[1];
+  EXPECT_EQ(line.distance, 20);
+  const double places[] = {42};
+  const FamilyLine at_42 = families_of(families, 0.95, places).lines.back();
+  EXPECT_NEAR(at_42.passing, 0.25, 1e-15);
+  EXPECT_LT(at_42.interval.lower, 0.01);
+  EXPECT_GT(at_42.interval.upper, 0.8);
+  EXPECT_TRUE(std::isnan(at_42.passed.number_interval.lower));
+}
+
+/// Halves that pass with a probability of 0.6, both or each by itself.
+TEST(Families, HaveIntervalsThatContainTheTruthAboutAsOftenAsStated) {
+  std::mt19937_64 engine(20261130);
+  std::uniform_real_distribution<double> uniform;
+  constexpr double share = 0.6;
+  for (const int number : {3, 6, 12, 40}) {
+    constexpr int num_trials = 200;
+    int num_hits = 0;
+    for (int trial = 0; trial < num_trials; ++trial) {
+      std::vector<ReleasedFamily> families(number);
+      for (ReleasedFamily& one : families) {
+        one.members = {member("", 1, 0, 5, MemberEnd::broken)};
+        for (const char* path : {"0", "1"}) {
+          const bool passes = uniform(engine) < share;
+          one.members.push_back(member(path, std::sqrt(0.5), 5, passes ? 20 : 8,
+                                       passes ? MemberEnd::flowing : MemberEnd::clogged));
+        }
+      }
+      const double places[] = {10};
+      const fit::Interval found = families_of(families, 0.95, places).lines.front().interval;
+      num_hits += found.lower <= share && share <= found.upper;
+    }
+    EXPECT_GE(num_hits, 0.9 * num_trials) << number << " families";
+  }
 }
 
 }  // namespace
