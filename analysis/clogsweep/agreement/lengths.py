@@ -21,8 +21,8 @@ CONFIDENCE = 0.95
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
-    """The highest point among those points that are clearly above some point on their left and some point on their
-    right."""
+    """The peak of a curve, or None. A point can be the peak only if it is clearly above at least one point on each
+    side. The peak is the highest of these points."""
     found = [point for i, point in enumerate(curve)
              if any(shorter(other, point) for other in curve[:i])
              and any(shorter(other, point) for other in curve[i + 1:])]
@@ -113,7 +113,7 @@ def two_mechanisms(groups: list[Group]) -> Finding:
     return Finding(overall(verdicts), ", ".join(counted))
 
 
-LEAST_HELP = 0.01  # A neighbour that bears a smaller fraction of the support does not help.
+LEAST_HELP = 0.01  # A neighbouring obstacle that bears a smaller fraction of the support does not count.
 
 
 def neighbours_support(runner: Runner, family: Family) -> Finding:
@@ -267,7 +267,7 @@ def disks_diverge(runner: Runner) -> Finding:
                                                 for group in softest))
 
 
-LONG = 1e4  # A length beyond this is 1e4 to 1e5 times that of stiff droplets.
+LONG = 1e4  # Longer lengths are 1e4 to 1e5 times the length of stiff droplets.
 APART = 0.25  # Largest sag at which the models agree, according to the article.
 ALIKE = 2.0  # Two lengths are alike if their ratio is at most this.
 

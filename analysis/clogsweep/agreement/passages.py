@@ -14,7 +14,8 @@ from .evidence import by_tolerance
 from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 
 
-# The largest deviation Delta_A of a published simulation from its experiment, as an error of the shape parameter.
+# The published simulations deviate from their experiments by Delta_A of up to this value. It serves as the error of the
+# published shape parameters.
 PUBLISHED_ERROR = 0.01
 
 
@@ -92,9 +93,8 @@ def drag_exponent(runner: Runner) -> Finding:
 
 
 def profiles_are_smooth(runner: Runner) -> Finding:
-    """Compares the profiles of all meshes with that of the finest mesh. The verdict is IN_KIND if all
-    profiles with 128 vertices or more are smooth, but a coarser mesh has a profile that is not noisy, or a droplet that
-    does not pass."""
+    """Compares the profile of each mesh with the profile of the finest mesh. The verdict is IN_KIND if all profiles
+    with 128 vertices or more are smooth, but not all coarser meshes have noisy profiles."""
     runs = channels.meshes(runner)
     *coarser, finest = sorted(runs)
     if not coarser or not coarser[0] < 128 <= coarser[-1]:
@@ -115,8 +115,8 @@ SMOOTH = 0.02  # A quarter of 0.08, the deviation of a published simulation from
 
 
 def ripples(way: Any, finest: Any) -> float:
-    """The ripples of a speed profile [v_t]: the root mean square of its difference from the profile on the finest mesh,
-    after subtraction of the difference's running mean over a tenth of a diameter."""
+    """The size of the ripples of a speed profile [v_t]. The profile on the finest mesh is subtracted, and then a
+    running mean over a tenth of a diameter. The size is the root mean square of the rest."""
     h = np.arange(-0.9, 0.9, 0.005)
     known = (h > way["h"].min()) & (h < way["h"].max())
     apart = np.interp(h[known], way["h"], way["speed_ratio"]) - np.interp(h[known], finest["h"], finest["speed_ratio"])
@@ -188,7 +188,7 @@ def springs_reach_a_plateau(runner: Runner) -> Finding:
 
 
 def shapes_deviate_less(runner: Runner) -> Finding:
-    """Compares the deviations of shapes and of speeds between passages with different springs."""
+    """Compares how much springs change the shapes in a passage with how much they change its speeds."""
     entries = channels.spring_deviations(runner, "elastic")[1].values()
     shares = [entry["delta_a"] / entry["delta_v"] for entry in entries]
     return Finding(AGREES if max(shares) <= 0.2 else IN_KIND if max(shares) < 1 else DOES_NOT,

@@ -2,9 +2,9 @@
 
 Close to a line tension at which the droplet clogs, Delta_v has several minima, each about a percent of Gamma wide. The
 search begins on a coarse grid and descends from the best points of this grid by the simplex method. It then brackets
-the line tension at which droplets clog, and descends again from several line tensions below this bracket. Their
-distance from the bracket doubles from one to the next. At the end the search takes Gauss-Newton steps. It stops when
-neither these steps nor another simplex lower Delta_v further.
+the line tension at which droplets clog, and descends again from several line tensions below this bracket. Each of these
+line tensions is twice as far from the bracket as the one before. At the end the search takes Gauss-Newton steps. It
+stops when neither these steps nor another simplex lower Delta_v further.
 """
 
 import itertools
@@ -39,7 +39,7 @@ CLOG_WIDTH = 0.005  # Width to which the bracket around the line tension of a cl
 LONGEST_STEP = np.array([0.05, 0.01])
 SHORTEST_STEP = np.array([5e-4, 1e-4])
 MOST_ROUNDS = 20
-WORTH_IT = 0.999  # A round counts as a gain if it multiplies Delta_v by less than this.
+WORTH_IT = 0.999  # A round is a gain if the ratio of the new Delta_v to the old one is below this value.
 NEGLIGIBLE = 0.03  # Gauss-Newton steps shorter than this many standard errors are not taken.
 
 GOOD = 0.2  # A larger Delta_v causes a warning, because speeds then differ by more than a fifth.

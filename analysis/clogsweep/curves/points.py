@@ -50,7 +50,8 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 
 
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
-    """Whether the parameter's value follows from other parameters. A value in a list of the sweep never does."""
+    """Whether the parameter's value follows from other parameters. The user chose values that are in a list of the
+    sweep, so they do not follow from others."""
     name = column["name"]
     return name not in fit["lists"] and (name in group["automatic"] or name in fit.get("following", ()))
 
@@ -65,8 +66,8 @@ def may_be_key(fit: Fit, column: Column) -> bool:
 def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
     """The columns of the keys with these names. If `names` is empty, the column of the only physical parameter that
     varies.
-    @throws UserError  if a name is no such key, or if its values do not vary or have no logarithm; if `names` is empty
-    and not exactly one parameter varies"""
+    @throws UserError  if a name is not the name of a possible key, or if values do not vary or have no logarithm; also
+    if `names` is empty and several parameters vary, or none"""
     groups: list[Group] = fit["groups"]
     possible = {column["key"].replace("-", "_"): column for column in fit["columns"] if may_be_key(fit, column)}
     if names:
@@ -104,8 +105,8 @@ def refuse_key(name: str, fit: Fit) -> Column:
 
 
 def are_shares(groups: Iterable[Group]) -> bool:
-    """Whether the sweep varies the density of random arrays as a share of the saturated density. The density then
-    depends on gap and diameter, and there are fewer shares than densities."""
+    """Whether the sweep varies the density of random arrays as a share of the saturated density. One share gives a
+    different density for each gap and diameter, so a sweep of shares has fewer shares than densities."""
     given = [group for group in groups if group["obstacle_filling"] == "density"]
     return len({_share(group) for group in given}) < len({_rounded(group["obstacle_density"]) for group in given})
 

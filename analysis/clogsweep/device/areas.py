@@ -21,7 +21,7 @@ SAME = 1e-8  # Corners are the same if they differ by at most this fraction of t
 
 
 def tidy(drawing: Drawing, region: Numbers | None, tolerance: float, are_holes_posts: bool = False) -> None:
-    """Drops duplicates, unites outlines that touch, and cuts out the page and a region.
+    """Drops duplicates, unites outlines that touch, and removes what is outside the page or outside a region.
     @param are_holes_posts  whether the holes in outlines are the posts, see posts_of_holes()
     @param region  two opposite corners in the coordinates that a drawing program shows, or None
     @param tolerance  as in fitted_circle()"""

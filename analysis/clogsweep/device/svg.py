@@ -54,7 +54,8 @@ def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
 
 
 def refuse_unknown(root: Any, path: pathlib.Path) -> None:
-    """@throws UserError  if a <use> refers to what is not in the file, the whole drawing is transformed, or has no size"""
+    """@throws UserError  if the target of a <use> is not in the file, or if the root of the drawing has a transform or
+    no size"""
     names = {element.get("id") for element in root.iter()}
     for use in root.iter(NAMESPACE + "use"):
         link = next((use.get(name) for name in ("href", flat.LINK) if use.get(name)), "")

@@ -47,7 +47,7 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
 
 
 def tell_left_out(rows: Records) -> None:
-    """Prints how many clogs of_polygons() excludes, if any."""
+    """If of_polygons() excludes clogs, prints how many."""
     if number := int((are_clogged_polygons(rows) & are_passages(rows)).sum()):
         print(f"left out: {rounded.count_text(number, 'clog')} in a channel or on a wall; "
               "clogfit report draws them, after clogsweep select "

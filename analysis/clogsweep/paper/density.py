@@ -29,8 +29,7 @@ class DensityFit:
     """A parabola through log lambda as a function of log density, and the density at which the parabola has the
     published length.
 
-    A length from n clogs has a relative error of 1/sqrt(n). The logarithm of the length has the same number as its
-    absolute error.
+    The relative error of a length from n clogs is 1/sqrt(n). This is also the absolute error of log lambda.
     """
 
     coefficients: np.ndarray[Any, Any]  # highest power first

@@ -101,8 +101,8 @@ class Runner:
         return CONFIGS / f"{name}.{self.size}.cfg"
 
     def _points(self, name: str) -> list[str]:
-        """The arguments for the points file beside a config. The points have different meshes. If --set overrides one
-        of the file's keys, all values of its other keys are combined, and a line says so."""
+        """The arguments for the points file beside a config. The points differ in their meshes. If --set overrides a
+        key of the file, the points become lists, one for each of the other keys, and a message states this."""
         file = self.config(name).with_suffix(".csv")
         if not file.exists():
             return []

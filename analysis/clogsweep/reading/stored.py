@@ -223,7 +223,7 @@ def observed_distances(rows: Records) -> Numbers:
 
 
 def warn_of_failures(rows: Records, outcome: str) -> None:
-    """Prints how many runs failed, if any did. @param outcome  what these runs count as"""
+    """If runs failed, prints how many. @param outcome  word for that as which failed runs count, such as flowing"""
     failed = rows[rows["status"] == b"failed"]
     if len(failed):
         print(f"{len(failed)} of {len(rows)} runs failed and count as {outcome}; the first one: "

@@ -111,7 +111,7 @@ def mark(kind: str, groups: Collection[Group]) -> str | None:
 
 
 def mark_legend(legend: Legend, handles: Sequence[Any]) -> None:
-    """Marks legend entries: the entry of a marked artist gets the name of the same groups."""
+    """Marks legend entries: if an artist is marked with groups, its legend entry is marked with these groups, too."""
     for handle, text in zip(handles, legend.get_texts()):
         name = (handle.lines[0] if hasattr(handle, "lines") else handle).get_gid()
         if name:

@@ -69,7 +69,8 @@ class Numbers:
         self._first: dict[str, str] = {}  # The first number with a comma, and the first with a point.
 
     def read(self, cell: str, column: str) -> float:
-        """@throws UserError  that names the column, also if some numbers so far have a comma, and others a point"""
+        """The number in a cell. @throws UserError  that names the column, also if some numbers so far have a comma, and
+        others a point"""
         for mark in ",.":
             if mark in cell:
                 self._first.setdefault(mark, cell)
