@@ -34,7 +34,7 @@ double largest_tilt(LatticeKind kind);
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// nearest_lattice(); nullopt if its tilt is more than largest_angle_error away from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
-/// A box with a whole-numbered width, larger than the given one, in which there is a fitting_lattice()
+/// A whole-numbered width of the box, larger than the given width, for which there is a fitting_lattice()
 /// [sigma].
 double box_that_fits(const ObstacleParameters& obstacles);
 /// The nearest lattices on both sides of lattice_angle, if there are any.
