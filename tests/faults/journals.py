@@ -131,8 +131,8 @@ class Faults:
             (case.folder / FILE).write_bytes(table)
 
     def go_on(self, case):
-        """Runs the sweep's command. If the command refuses the journal, it is run again without the journal. @return
-        whether the command refused the journal"""
+        """Runs the sweep's command. If the command refuses the journal, deletes the journal and runs the command again.
+        @return whether the command refused the journal"""
         before = {path.name: path.read_bytes() for path in case.folder.iterdir()}
         outcome = run(case, "clogsweep", *self.stopped.settings, exit_codes={0, 2})
         if outcome.code != 2:

@@ -27,7 +27,7 @@ class Installation(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         first = cls.folder / "first"
         cls.called("cmake", "--install", BIN.parent, "--prefix", first)
-        # The installation is moved. A program that depends on the old place fails then.
+        # The installation is moved, so that programs fail if they depend on the first place.
         cls.prefix = cls.folder / "moved"
         first.rename(cls.prefix)
 

@@ -70,7 +70,7 @@ class Names(Analysis):
                 name, *options = command
                 self.draw(name, "./-dash.h5", *options, "--output", f"./-{name}", "--programs", BIN)
         self.draw("export", "./-dash.h5", "./-rows.csv", "--programs", BIN)
-        # These commands read the sweep, and refuse it.
+        # These commands must read the sweep before they refuse it.
         for name, more, words in (("clogs", [], "no clogged polygon"), ("curve", [], "only 2 values"), ("critical-angle", [], "no lattices"), ("compare", ["./-dash.h5"], "no ratio to draw")):
             with self.subTest(name):
                 self.refuse_analysis(name, "./-dash.h5", *more, "--programs", BIN, words=[words])

@@ -19,7 +19,7 @@ SHORTER = {"mpirun -np 2 clogsweep": str(BIN / "clogsweep"), "line-tension=0.2,0
 
 
 def run_cells(cells):
-    """Runs cells. Like a notebook, it shows the value of the last line of each cell."""
+    """Runs cells, and shows the value of the last line of each cell as a notebook does."""
     names = {}
     for cell in cells:
         *body, last = ast.parse(cell).body
