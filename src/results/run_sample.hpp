@@ -16,8 +16,7 @@ double work_per_step(const RunParameters& run);
 struct Sample {
   std::vector<RunCost> costs;
   std::string source;
-  std::string
-      failure;  ///< why the first run that could not begin failed; `costs` excludes runs that could not begin
+  std::string failure;  ///< why the first run that could not begin failed; such runs are not in `costs`
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
   double spacing = 0;          ///< obstacle spacing of one of these short runs [sigma]

@@ -29,8 +29,7 @@ nlohmann::ordered_json step_json(const Step& step, const char* name, int num_end
           {"upper", step.interval.upper}};
 }
 inline constexpr int few_digits = 4;
-inline constexpr int all_digits =
-    17;  ///< with this many digits, different numbers always have different texts
+inline constexpr int all_digits = 17;  ///< with so many digits, different numbers have different texts
 /// The smallest number of digits, at least four, with which different values have different texts.
 int distinct_digits(const std::vector<sweep::Value>& values);
 /// Text for a printed table, with `digits` significant digits; `-` for an unset value. Escapes control

@@ -41,9 +41,8 @@ struct WeibullTest {
   double scale = 0;                   ///< [sigma]
   double exponential_likelihood = 0;  ///< maximum of the log-likelihood
   double weibull_likelihood = 0;      ///< maximum of the log-likelihood
-  double likelihood_ratio =
-      0;               ///< twice the difference of the two maxima, chi-squared with one degree of freedom
-  double p_value = 0;  ///< probability of a ratio at least as large if P(r) is exponential
+  double likelihood_ratio = 0;  ///< twice the difference of the maxima; chi-squared, one degree of freedom
+  double p_value = 0;           ///< probability of a ratio at least as large if P(r) is exponential
 };
 WeibullTest test_exponentiality(std::span<const Observation> runs);
 

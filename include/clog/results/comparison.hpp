@@ -79,10 +79,8 @@ struct Comparisons {
   std::vector<LeftOut> left_out;
   std::string unit = "sigma";      ///< unit of lengths: "sigma" or "mm"
   std::optional<double> sigma_mm;  ///< the droplet's diameter, if lengths are also given in mm
-  std::ptrdiff_t num_tests =
-      0;  ///< number of log-rank tests; copies of runs in several laboratories count as one test
-  double within =
-      0;  ///< largest distance between two clogs that count as at the same place [sigma]; 0: half a spacing
+  std::ptrdiff_t num_tests = 0;    ///< log-rank tests; copies of runs in other laboratories are not counted
+  double within = 0;               ///< clogs this close count as at the same place [sigma]; 0: half a spacing
 };
 
 /// Appends to Comparisons::left_out the groups of `side` that match no group of `other`, if there are any.

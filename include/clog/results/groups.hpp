@@ -89,9 +89,8 @@ struct Group {
     std::vector<fit::IncidenceStep> incidence;  ///< steps of F_c; empty without a clogging length
   };
   std::vector<EndsBy> causes;
-  fit::MeanSpeed relative_speed;  ///< mean of v_g/v_t over the runs that have a mean speed
-  fit::MeanSpeed
-      relative_speed_pooled;  ///< v_g/v_t, as total distance divided by total time of the same runs
+  fit::MeanSpeed relative_speed;         ///< mean of v_g/v_t over the runs that have a mean speed
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, total distance divided by total time of these runs
   /// v_g/v_t, as total distance divided by total time of all runs, including those with a short distance. A
   /// run counts until its end, a clogged run until its last dwell began. This speed is not biased towards
   /// fast runs. `relative_speed` is biased if droplets clog, because only the faster droplets go far enough
@@ -122,9 +121,8 @@ struct Group {
   /// fits.
   int num_left_out = 0;
   int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
-  int num_stability_unknown = 0;  ///< clogs with unknown stability (column stability)
-  int num_near_friction_limit =
-      0;  ///< clogs that need almost all available friction (sweep::is_near_friction_limit)
+  int num_stability_unknown = 0;    ///< clogs with unknown stability (column stability)
+  int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
   /// Whether at least half of the clogs have exactly the distance of another clog. If no run clogged, this
   /// member compares the distances of the runs that met an obstacle.
   bool are_runs_equal = false;

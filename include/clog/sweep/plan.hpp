@@ -73,8 +73,7 @@ class Plan {
     Seeds seeds;
     std::int64_t runs;  ///< the first group, before the division into shards, that has the same parameters
                         ///< apart from the laboratory
-    std::int64_t twin =
-        -1;  ///< group that contains the twins of this group's tasks; -1 if these tasks have no twins
+    std::int64_t twin = -1;  ///< group that contains the twins of this group's tasks; -1: no twins
   };
   /// Successive tasks that go through the same groups again and again, each time with the next seed.
   struct Layer {

@@ -42,9 +42,8 @@ struct RunRow : RunResult {
 
   RunParameters parameters;                       ///< resolved parameters
   std::set<const Parameter*> unknown_parameters;  ///< parameters that the row's file does not have
-  double obstacle_density =
-      0;               ///< density, see Scene; for a saturated array, the density of the jamming limit
-  std::string preset;  ///< the preset with this interface, "custom", or "none" for sp
+  double obstacle_density = 0;     ///< density, see Scene; saturated arrays have that of the jamming limit
+  std::string preset;              ///< the preset with this interface, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 
   double wall_seconds = 0;

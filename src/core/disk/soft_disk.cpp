@@ -18,8 +18,8 @@
 namespace clog {
 namespace {
 
-/// Up to a dozen obstacles of a saturated array overlap a soft disk at once. The bound on (omega dt)^2 of all
-/// these contacts together is that of all modes of the polygon together.
+/// Up to a dozen obstacles of a saturated array overlap a soft disk at once. (omega dt)^2 of these contacts
+/// together has the same bound as that of all modes of the polygon together.
 constexpr double most_contacts = 12;
 constexpr double max_omega_dt2 = 3.0;
 

@@ -254,9 +254,8 @@ struct DragParameters {
   double speed_exponent = 0;            ///< n: a daughter of diameter d has d^n times the V_t of the ancestor
   double near_wall = 0;                 ///< near-wall drag b_0/b_inf of polygons; soft disks have none
   double near_wall_exponent = 4.0 / 3;  ///< exponent alpha; 4/3 is calibrated in Appendix A of Cheng et al.
-  double near_wall_cutoff =
-      published_contact_range;  ///< smaller distances d are raised to this value [sigma]
-  double relative = 1;          ///< c, the relative drag divided by b_inf; only for polygons
+  double near_wall_cutoff = published_contact_range;  ///< smaller d are raised to this value [sigma]
+  double relative = 1;  ///< c, the relative drag divided by b_inf; only for polygons
 };
 
 /// Everything that determines the course of one run: two runs with equal parameters are equal bit for bit.

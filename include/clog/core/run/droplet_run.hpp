@@ -76,8 +76,7 @@ struct ThinnestNeck {
 struct RunResult {
   RunStatus status = RunStatus::running;
   std::optional<FoundBy> clogged_by = FoundBy::not_clogged;
-  std::optional<Stability> stability =
-      Stability::none;  ///< stability of a clogged droplet: stable or unknown
+  std::optional<Stability> stability = Stability::none;  ///< of a clogged droplet: stable or unknown
   std::optional<FailedBy> failed_by = FailedBy::none;
   double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
   /// `distance` at the last check that found the droplet intact [sigma]. With self-contact, intact means also

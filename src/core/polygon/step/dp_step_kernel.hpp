@@ -103,8 +103,7 @@ struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< mean velocity of the vertices
   double area_x = 0, area_y = 0;  ///< velocity of the area's centroid
   double c_x = 0, c_y = 0;
-  double a_x = 0,
-         a_y = 0;  ///< a of KickCoefficients, including the force on the area, divided by 6 times the area
+  double a_x = 0, a_y = 0;   ///< a of KickCoefficients, with the force on the area; divided by 6 areas
   double half_pressure = 0;  ///< difference between the implicit pressure and the present pressure, as a kick
 };
 /// Powers in units in which M/N_v = 1.

@@ -131,8 +131,8 @@ HWY_INLINE V reciprocal(V v) {
 /// Rounds towards zero. The numbers must fit into integers.
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #if HWY_TARGET == HWY_AVX3
-  return hn::Vec<hn::RebindToSigned<D>>{_mm512_cvttpd_epi64(
-      v.raw)};  // Highway's version is slower, because it also handles numbers that do not fit
+  return hn::Vec<hn::RebindToSigned<D>>{
+      _mm512_cvttpd_epi64(v.raw)};  // Highway's version also handles numbers that do not fit
 #else
   return hn::ConvertTo(hn::RebindToSigned<D>(), v);
 #endif
