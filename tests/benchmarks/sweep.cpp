@@ -134,7 +134,7 @@ RunParameters parameters(const Task& task, std::uint32_t seed) {
 }
 
 struct Measured {
-  double per_vertex_step;  ///< [ns]
+  double per_vertex_step;  ///< Cost per vertex and step of the run [ns].
   double seconds;          ///< Duration of a run, including its array and its release.
   double limit;            ///< Cost per vertex of a bare step [ns].
 };

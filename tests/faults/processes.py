@@ -8,7 +8,7 @@ import time
 
 from support import children_of
 
-# Neither limit depends on how busy the machine is.
+# The limits do not depend on how busy the machine is.
 CPU_SECONDS = 100  # Limit for all processes of a program together; a sweep with sanitizers needs about 30.
 IDLE_SECONDS = 100  # Limit on the time in which all processes wait. Waiting for a processor or a disk does not count.
 LOOK_SECONDS = 1

@@ -84,7 +84,7 @@ def shared_sweep(*arguments, program="clogsweep"):
 
 
 def undisturbed(sweep):
-    """The file of the same sweep without disturbance. The last two arguments, --output and its value, are excluded."""
+    """The file of an undisturbed sweep with these arguments, without the last two of them (--output and its value)."""
     return shared_sweep(*sweep[:-2])
 
 

@@ -258,8 +258,8 @@ class Fit(ProgramTest):
         printed = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
         self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", printed)
         self.assertIn("groups that differ only in max-time are joined (--pool)\n", printed)
-        # With another number of boxes the same seed gives another array. So these runs do not repeat droplets, and all
-        # of them count.
+        # With another number of boxes the same seed gives another array, so no run repeats a droplet, and all runs
+        # count.
         self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
         group, = json.loads(self.succeed("clogfit", "boxes.h5", "--format", "json",
                                          "--pool=boxes,max-time").stdout)["groups"]
@@ -563,7 +563,7 @@ class Fit(ProgramTest):
                          [55, 55 / 4, 55 / 4])
         self.assertTrue(group["break_up_length_lower"] < 55 / 4 < group["break_up_length_upper"])
         # Computed by hand: when a run ends, the incidence grows by P/n, with the P just before the end and n runs at
-        # risk. P/n is 1/10 until a run is censored at 5. Then P is 6/10, and n is 5.
+        # risk. P/n is 1/10 until a run is censored at 5. After 5, P is 6/10 and n is 5.
         broken = [(step["distance"], round(step["probability"], 12)) for step in group["incidence"]["broken"]]
         self.assertEqual(broken, [(2, 0.1), (3, 0.2), (7, 0.32), (8, 0.44)])
         clogged = [round(step["probability"], 12) for step in group["incidence"]["squeezed"]]
@@ -575,7 +575,7 @@ class Fit(ProgramTest):
         self.assertIn("lambda_b: mean distance before break-up", text)
         self.assertNotIn("w/s/h/o", text)
         # The run of a droplet that rested for long ends at the place of this rest, even if the droplet broke later.
-        # Otherwise the run ends where the droplet broke.
+        # The run of a droplet that did not rest ends where the droplet broke.
         dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5")
                   if name.startswith(("longest_dwell", "earlier_dwell"))]
         self.change(**{name: np.nan for name in dwells})
@@ -856,8 +856,8 @@ class Fit(ProgramTest):
 
     def test_own_circles_have_a_share_along_the_rows_that_are_stated(self):
         disks = ["model=sp", "wall-stiffness=10", "max-time=1500"]
-        # These are the posts of a rhombic lattice, 8 columns of 8 posts. Each column is shifted by a quarter of the
-        # pitch.
+        # The posts form a rhombic lattice with 8 columns of 8 posts. Each column is shifted against the last by a
+        # quarter of the pitch.
         posts = [(1.5 * i + 0.1, (1.5 * (j + i / 4)) % 12) for i in range(8) for j in range(8)]
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x, y in posts))
         self.succeed("clogsweep", *disks, "obstacles=posts.csv", "box=12", "seeds=1..3",

@@ -1362,7 +1362,7 @@ class OtherTools(Analysis):
         axes.set_axis_off()
         for x, y in [(800, 300), (1600, 900)]:
             axes.add_patch(matplotlib.patches.Circle((x, y), 50))
-        axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # a circle with a diameter of 0.1 inch
+        axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # A circle with a diameter of 0.1 inch.
         axes.add_patch(matplotlib.patches.Circle((-500, 600), 50))  # The axes clip this circle.
         figure.savefig(self.folder / "device.svg")
         np.testing.assert_allclose(self.circles_of("device.svg", droplet=0.2 * 25.4e-3) / 25.4, [(800, 300, 100), (1600, 900, 100), (2400, 600, 100)], rtol=1e-3)

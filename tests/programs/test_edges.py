@@ -92,8 +92,8 @@ BRIEF = [word.replace("max-time=2e4", "max-time=5e3") for word in SLOW]
 
 
 class Places(SweepTest):
-    """Tests that a sweep resolves its path only once. Other users may change the path while the sweep runs. Then the
-    sweep still does not lose a row, and does not write to the files of others."""
+    """Tests that a sweep resolves its path only once. If other users change the path while the sweep runs, the sweep
+    must not lose a row, and must not write to the files of others."""
 
     def begin(self, sweep, output):
         """Starts a sweep. Waits until the sweep has written its table."""

@@ -16,7 +16,7 @@ from support import BIN, FAMILIES, SNAPSHOT_OF_A_DAUGHTER, TIMING, SweepTest, sh
 import clogsweep
 from clogsweep.drawing import families
 
-# Families with runs that take seconds. They have snapshots of ancestors and of daughters.
+# Families with runs that take seconds, so that they have snapshots of ancestors and of daughters.
 LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
 
 

@@ -693,8 +693,8 @@ class Pictures(Analysis):
         self.assertGreater(len(run.times), 1000)
         self.assertEqual(frames[-1], len(run.times) - 1)
         self.assertLessEqual(len(frames), 100)
-        # In ten frames the droplet moves too far for the eye. So the film shows only the end of the run, in steps that
-        # the eye can follow.
+        # The whole run in 100 frames would have steps that the eye cannot follow, so the film shows only the end of the
+        # run.
         self.assertGreater(frames[0], 0)
         steps = np.abs(np.diff(trajectory.centroids(run.polygons)[frames], axis=0)).sum(axis=1)
         self.assertLess(steps.max(), 2 * film.LONGEST_STEP)

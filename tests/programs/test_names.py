@@ -175,8 +175,8 @@ class Outputs(Analysis):
         self.assertEqual(page.read_text(encoding="utf-8"), "<!DOCTYPE html> earlier")
 
     def test_every_output_takes_the_place_of_the_earlier_one(self):
-        """A second name of the earlier file still leads to the old content. So the command did not write into this
-        file."""
+        """The earlier file has a second name, which must still lead to the old content: a command must not write into
+        an earlier file."""
         self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4")
         self.copy_sweep("run.h5", "array", *QUICK, "line-tension=3", "seeds=1", "--polygon-interval=20",
                         program="clogrun")

@@ -1,5 +1,5 @@
-"""Runs the cells of the gallery's notebook, with fewer and shorter runs. So it tests that the module has everything
-that the cells call.
+"""Runs the cells of the gallery's notebook, with fewer and shorter runs, to test that the module has everything that
+the cells call.
 
 slow_notebook tests whether the cells print the stored outputs.
 """

@@ -80,7 +80,7 @@ class Parts(test_figures.Drawn):
                          [24, 4, 0, 2])
         assert_fitted(self, sweep)
 
-        # A figure from finished rows shows the same numbers as a figure from the sweep. It leaves out groups with
+        # A figure from finished rows shows the same numbers as a figure from the sweep, but leaves out groups with
         # missing runs.
         sweep.fit["groups"][0]["planned"] = 7
         finished.write("clogging-sp", sweep, rows)

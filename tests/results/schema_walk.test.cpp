@@ -99,8 +99,8 @@ sweep::Plan plan_of_both(const Parameter& parameter) {
   return sweep::Plan(settings);
 }
 
-/// Two runs that differ in the parameter. They come from two sweeps, because a list of values cannot contain
-/// words.
+/// Two runs that differ in the parameter. The runs come from two sweeps, because a list of values cannot
+/// contain words.
 std::vector<RunParameters> both_runs(const Parameter& parameter) {
   sweep::Settings settings = settings_for(parameter);
   const RunParameters one = sweep::Plan(settings).task(0);

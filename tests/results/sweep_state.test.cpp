@@ -56,7 +56,8 @@ int our_fsync(int descriptor) {
 namespace clog::results {
 namespace {
 
-/// Tests a sweep of two runs. They open its state repeatedly, as if the sweep had been killed and resumed.
+/// Tests the state of a sweep of two runs. The tests open the state repeatedly, as if the sweep had been
+/// killed and resumed.
 class SweepStateTest : public testing::Test {
  protected:
   std::filesystem::path folder_ =

@@ -177,7 +177,7 @@ sweep::JobFactory failing_on(const scheduler::Communicator& ranks,
 /// The results on rank 0 of a sweep with broken ranks.
 struct Outcome {
   scheduler::SweepEnd end;
-  std::map<std::int64_t, std::string> status;     // by task
+  std::map<std::int64_t, std::string> status;     // Status in the row of each task.
   std::map<std::int64_t, std::int64_t> attempts;  // Attempts that count, by task.
   std::map<std::int64_t, int> starts;
   std::set<int> set_aside;  // numbers of hosts

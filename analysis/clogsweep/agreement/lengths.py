@@ -74,9 +74,9 @@ def peak_moves(groups: list[Group]) -> Finding:
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
-    """The range of line tensions in which squeezed clogs replace wrapped clogs. It begins at the largest line tension
-    at which more clogs are wrapped than squeezed. It ends at the next line tension at which more clogs are squeezed
-    than wrapped."""
+    """The range of line tensions in which squeezed clogs replace wrapped clogs. The range begins at the largest line
+    tension at which more clogs are wrapped than squeezed, and ends at the next line tension at which more clogs are
+    squeezed than wrapped."""
     wrapped = max((point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]), default=math.inf)
     squeezed = [point["line_tension"] for point in curve
                 if point["squeezed"] > point["wrapped"] and point["line_tension"] > wrapped]
@@ -279,8 +279,8 @@ def over_the_sag(runner: Runner, config: str, groups: Sequence[Group]) -> list[t
 
 def compared(runner: Runner, family: Family, is_beyond: bool) -> Finding:
     """Compares the lengths of polygons with those of disks that have the same sag. With `is_beyond` the sags are larger
-    than APART, and the lengths should differ. Otherwise the sags are smaller, and the lengths should agree. Lengths
-    agree if their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound
+    than APART, and the lengths should differ. Without `is_beyond` the sags are smaller, and the lengths should agree.
+    Lengths agree if their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound
     replaces the length."""
     disks = over_the_sag(runner, "clogging-sp", runner.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]

@@ -14,8 +14,8 @@ from .evidence import by_tolerance
 from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 
 
-# The published simulations deviate from their experiments by Delta_A of up to this value. It serves as the error of the
-# published shape parameters.
+# Error of the published shape parameters. The published simulations deviate from their experiments by a Delta_A of up
+# to this value.
 PUBLISHED_ERROR = 0.01
 
 
@@ -171,7 +171,7 @@ def calibrated_to_measured(_: Runner) -> Finding:
 
 
 def tension_times_tilt(_: Runner) -> Finding:
-    """Gamma is inversely proportional to the sine of the tilt, so their product is the same for all tilts."""
+    """Gamma is inversely proportional to the sine of the tilt, so Gamma times this sine is equal for all tilts."""
     products = [tension * math.sin(math.radians(tilt)) for tension, tilt in channels.TILTS.items()]
     return arithmetic(products, (products[0],) * 3, 0.02)
 

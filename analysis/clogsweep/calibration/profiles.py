@@ -15,7 +15,7 @@ FEWEST_FRAMES = 3
 # experiments have no frames farther away.
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
-ROUNDING = 1e-9  # [sigma]
+ROUNDING = 1e-9  # [sigma].
 # The units that clogfit units knows. Unicode has two characters for micro.
 METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}
 

@@ -1,5 +1,5 @@
-"""Finds the largest line tension at which droplets break up on a single obstacle. It depends on the offset of the
-droplet's path from the obstacle's centre."""
+"""Finds the largest line tension at which droplets break up on a single obstacle, for each offset of the droplet's path
+from the obstacle's centre."""
 
 import math
 import pathlib

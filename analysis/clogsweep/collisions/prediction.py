@@ -21,7 +21,7 @@ from .collision import BOX, FALL
 # Step between the gaps of the simulated pairs [sigma]. The step is a twentieth of the range of gaps that can hold a
 # droplet.
 GAP_STEP = 0.04
-ANGLE_STEP = 3  # [degrees]
+ANGLE_STEP = 3  # Step between the angles of the simulated pairs [degrees].
 DIAMETER_STEP = 0.1  # Step between the mean diameters of the simulated pairs [sigma].
 EXIT = 6  # Distance of the exit behind the obstacles [sigma]. Droplets that hang there do not reach the exit.
 # Length of a fall [sigma]. A droplet that still moves after the time of this fall at terminal speed counts as free.

@@ -1,9 +1,10 @@
 """Decides which groups of clogfit's table belong to a curve, and why others do not.
 
 Groups with different physical parameters belong to different curves. A numerical parameter, such as `inertia` or `box`,
-usually does not separate curves, because some parameter sets need another box or more time than others. It separates
-curves if the sweep varies this parameter while the physics stays the same. Values that follow from other parameters
-never separate curves: automatic values, the name of the preset, and the density of a saturated array.
+usually does not separate curves, because some parameter sets need another box or more time than others. A numerical
+parameter separates curves only if the sweep varies this parameter while the physics stays the same. Values that follow
+from other parameters never separate curves: automatic values, the name of the preset, and the density of a saturated
+array.
 """
 
 from __future__ import annotations
@@ -190,8 +191,8 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
         if not (group["total_distance"] or 0) > 0:
             excluded.append(Excluded(index, "no run of it has covered any distance"))
         elif group["exit"]:
-            # In a short device only few places hold droplets. So clogs at one value of the key do not inform the curve
-            # at other values.
+            # In a short device only few places hold droplets, so clogs at one value of the key say nothing about
+            # lengths at other values.
             excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
         else:
             useful.append(index)

@@ -17,7 +17,7 @@ from ..tools.hints import Numbers
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 LINK = "{http://www.w3.org/1999/xlink}href"
-# Elements that are no shapes. Then attributes and properties that would make librsvg draw pixels or markers.
+# Elements that are no shapes; attributes and properties that would make librsvg draw pixels or markers.
 NO_SHAPES = ("text", "image", "foreignObject")
 PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end", "mix-blend-mode", "isolation",
           "enable-background")
@@ -37,7 +37,7 @@ IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b"
 # The longer side of the page, the side of the canvas around the page, and the place of the page on the canvas. Shapes
 # outside the page are on the canvas, too. librsvg has single precision, in which powers of two are exact.
 PAGE, CANVAS, BEFORE = 2**16, 2**20, 2**19
-SIZE = 2**22  # Size of the flat drawing [px]. Its coordinates are multiples of 1/256.
+SIZE = 2**22  # Size of the flat drawing [px]. Coordinates in the flat drawing are multiples of 1/256.
 STEP = 1e-7  # Coordinates are rounded to multiples of this fraction of the page's longer side.
 
 

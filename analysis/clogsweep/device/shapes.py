@@ -34,7 +34,8 @@ class Drawing:
     """A drawing as read from its file. Lengths are in the drawing's own unit, and y points upwards."""
 
     circles: list[tuple[float, float, float]]  # Each has x, y and diameter.
-    # Corners (n, 2) of each outline. Its last corner is joined to its first, unless the border of a picture cuts it.
+    # Corners (n, 2) of each outline. An outline is closed from its last corner to its first, unless the border of a
+    # picture cuts the outline.
     outlines: list[Numbers]
     metres: float | None  # Length of the drawing's unit [m]; None if the file does not state it.
     frame: Box | None = None  # The border of a picture, or of the region that the user gave.

@@ -26,7 +26,7 @@ from . import device_plan, surroundings
 T = TypeVar("T")
 OVER = [b"clogged", b"flowing", b"passed", b"broken", b"failed"]
 MOST_PANELS = 6
-# Width of the colour bar, which is also the width of the legend without its text. Then the width of a letter in the
+# The width of the colour bar, which is also the width of the legend without its text, and the width of a letter in the
 # legend [inches].
 BESIDE, OF_LETTER = 0.9, 0.055
 SITE = 0.25  # Clogs closer together than this are at one place [sigma].
@@ -45,8 +45,8 @@ class Place:
     has_walls: bool
     exit: float  # distance of the exit from the entrance, or 0 if there is no exit
     rows: Records
-    droplet: float = 1.0  # diameter of the droplet in the unit of all lengths
-    unit: str = ""  # unit of all lengths, if it is not the diameter of the droplet
+    droplet: float = 1.0  # Diameter of the droplet in the unit of all lengths.
+    unit: str = ""  # Name of the unit of all lengths. The name is empty if this unit is the droplet's diameter.
 
     def coordinate(self, name: str) -> str:
         """The label of an axis."""
@@ -236,8 +236,8 @@ def in_one_unit(parts: list[Part]) -> list[Part]:
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
-    """A path in the device. It has a gap where it leaves the device at one side and enters it again at the opposite
-    side."""
+    """A path in the device. The path has a gap where the droplet leaves the device at one side and enters the device
+    again at the opposite side."""
     inside = place.wrapped(points)
     jumps = np.flatnonzero((np.abs(np.diff(inside, axis=0)) > [place.length / 2, place.width / 2]).any(axis=1)) + 1
     return np.insert(inside, jumps, np.nan, axis=0)

@@ -85,8 +85,8 @@ class Groups:
         return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve for the groups of one drawn curve, if there is one. A fitted curve may contain groups of
-        several drawn curves. It is returned only for the drawn curve with the first of its points."""
+        """The fitted curve for the groups of one drawn curve, if there is one. A fitted curve with groups of several
+        drawn curves is returned only for the drawn curve that has the first point of the fitted curve."""
         for curve in self._fitted["curves"]:
             if any(self._told[curve["points"][0]["group"]] is group for group in members):
                 return curve
@@ -186,7 +186,7 @@ class Groups:
                       and not self._is_automatic(name) and not self._is_of_preset(name)
                       and not (names and self.follows(name, names))]
         # A label leaves out words and automatic values that follow from its other parameters. A preset is named even
-        # then, if presets with different interfaces occur. It comes before the parameters that it sets.
+        # then, if presets with different interfaces occur. A preset comes before the parameters that it sets.
         rest = [name for name in self.columns if name not in names and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
             have_interfaces = name == "preset" and len(self.values(name) & INTERFACES.keys()) > 1

@@ -36,7 +36,7 @@ class DensityFit:
     covariance: np.ndarray[Any, Any]
     chi_squared: float
     degrees_of_freedom: int
-    density: float  # [1/sigma^2]
+    density: float  # [1/sigma^2].
     lower: float  # Lower end of the 95 % interval; the interval includes the error of the fit and the published error.
     upper: float
 

@@ -36,7 +36,8 @@ RESULTS = ["status", "distance", "sound_distance", "time", "steady_distance", "s
            "failed_by", "wrapped_support", "mesh_hold", "friction_use", "shape_parameter", "longest_dwell",
            "first_contact_at", "healed_crossings", "processor_seconds"]
 WORDS = ["model", "preset", "obstacle_filling", "status", "mechanism", "stability", "failed_by"]
-DIGITS = {"distance": 12, "sound_distance": 12, "obstacle_density": 12, "wall_stiffness": 12}  # of other numbers: 6
+# Digits of these numbers. All other numbers have 6 digits.
+DIGITS = {"distance": 12, "sound_distance": 12, "obstacle_density": 12, "wall_stiffness": 12}
 # Curves of P(r) are the largest part of clogfit's JSON. A single figure needs one of these curves.
 LARGE = ("survival", "censored_distances")
 MOST_CURVES = 4

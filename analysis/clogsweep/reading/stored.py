@@ -81,8 +81,8 @@ def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
 
 @functools.lru_cache
 def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
-    """Lets clogsweep check a sweep without a seal, and prints the warnings. Such a sweep was copied or changed by
-    another program. The check is repeated only if the file has changed since. @throws Damaged; UserError"""
+    """Lets clogsweep check a sweep without a seal, and prints the warnings. A sweep has no seal if another program
+    copied or changed the file. The check is repeated only if the file has changed since. @throws Damaged; UserError"""
     try:
         clogsweep = programs.programs_in(folder) / "clogsweep"
     except UserError as error:

@@ -131,7 +131,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
       position[n + i] = std::sin(2 * angle);
     }
     EXPECT_EQ(num_self_crossings(position), 1) << n << " vertices";
-    // The contour with x and y exchanged extends farther along y. Then the edges are sorted along y.
+    // The edges of this contour are sorted along y, because the contour extends farther along y than along x.
     Eigen::ArrayXd turned(2 * n);
     turned << position.tail(n), 2 * position.head(n);
     EXPECT_EQ(num_self_crossings(turned), 1) << n << " vertices, turned";

@@ -187,8 +187,8 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
 }
 
 /// Tries snapshots that have a correct checksum and wrong content: several unlikely values replace each
-/// number in turn. resume() may refuse such a snapshot. Otherwise the run must continue to its end, without a
-/// crash or an endless loop.
+/// number in turn. resume() may refuse such a snapshot. If resume() accepts the snapshot, the run must
+/// continue to its end, without a crash or an endless loop.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   RunParameters run = with_friction(soft_among_walls(), 0.02, FilmFriction::off);
   run.dp.vertices = 32;

@@ -208,8 +208,8 @@ TEST(OwnCircles, BlockOrPassADropletInANarrowChannelByItsStiffness) {
   EXPECT_EQ(end_of(narrow_channel(1.05, 0.1)).status, RunStatus::passed);
   const RunResult stiff = end_of(narrow_channel(1.05, 3));
   EXPECT_EQ(stiff.status, RunStatus::clogged);
-  // The droplet rests on the bump and on the opposite wall. Its place is approximately that of a circle of
-  // radius 1/2 that touches this wall and the bump, which is a circle of radius 0.4 at (8, 0).
+  // The stiff droplet rests on the bump and on the opposite wall, approximately where a circle of radius 1/2
+  // touches this wall and the bump, which is a circle of radius 0.4 at (8, 0).
   const double height = 1.05 - 0.5, reach = 0.5 + 0.4;
   EXPECT_NEAR(stiff.release[0] + stiff.distance, 8 - std::sqrt(reach * reach - height * height), 0.1);
 }

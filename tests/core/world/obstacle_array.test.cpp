@@ -385,10 +385,10 @@ TEST(ObstacleArray, FindsPlacesWithinAPost) {
   constexpr double pi = std::numbers::pi;
   std::vector<Obstacle> circles;
   const Eigen::Array2d ring{9, 1}, open{4, 6}, half{3, 0};
-  add_arc(circles, ring, 2, 0, 2 * pi);      // across two borders of the period
-  add_arc(circles, open, 1.5, 0.2, 2 * pi);  // with an opening
-  add_arc(circles, half, 1, -0.05, pi);      // on the lower wall, if there is one
-  for (double x = 0; x < 10; x += 0.15) circles.push_back({x, 8.5, 0.1});  // from border to border
+  add_arc(circles, ring, 2, 0, 2 * pi);      // The ring crosses two borders of the period.
+  add_arc(circles, open, 1.5, 0.2, 2 * pi);  // This ring has an opening.
+  add_arc(circles, half, 1, -0.05, pi);      // The half ring stands on the lower wall, if there is one.
+  for (double x = 0; x < 10; x += 0.15) circles.push_back({x, 8.5, 0.1});  // A row from border to border.
   const ObstacleArray periodic(10, circles);
   Period beside_walls(10);
   beside_walls.beside = 3;

@@ -213,9 +213,9 @@ TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
   expect_balance(run, ObstacleArray(20, {}, {incline}), 0.2);
 }
 
-/// A rope over half of a disc. The rope consists of vertices that are joined by stiff springs. Its straight
-/// ends hang along +x. The disc pushes the vertices away, and holds them by friction. Forces pull at both
-/// ends until the rope rests or slides.
+/// A rope over half of a disc. The rope consists of vertices that are joined by stiff springs. The straight
+/// ends of the rope hang along +x. The disc pushes the vertices away, and holds them by friction. Forces pull
+/// at both ends until the rope rests or slides.
 class Rope {
  public:
   static constexpr double radius = 0.5;

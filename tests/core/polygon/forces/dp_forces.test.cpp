@@ -300,8 +300,8 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
 
 TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
   // A wetted wall changes the tension along the interface. The springs along the interface do not balance
-  // this change. The edges of the polygon carry a part of the change, and the liquid takes the rest. So the
-  // forces on all vertices along a flat wall add up to zero.
+  // this change. The edges of the polygon carry a part of the change, and the liquid takes the rest. The
+  // sum of all forces along a flat wall must be zero.
   const ObstacleArray wall(20, {}, {{.tip = {0.37, 0}, .axis = {1, 0}, .half_angle = std::numbers::pi / 2}});
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
   run.dp.perimeter_spring = PerimeterSpring::along;

@@ -289,7 +289,7 @@ TEST(DpDroplet, FeelsBitIdenticalForcesAnyNumberOfBoxesDownstream) {
 }
 
 TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForItWithoutDrag) {
-  // The perimeter is 6 times that of a circle. So the area mode has omega dt = 2.1 at this step.
+  // The perimeter is 6 times that of a circle, so the area mode has omega dt = 2.1 at this step.
   RunParameters run = bare_parameters(256);
   run.drag.terminal_speed = no_drag;
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));

@@ -148,7 +148,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
 }
 
 TEST(InstructionSets, HaveDifferentNames) {
-  // Every name must be listed once. Otherwise use_instruction_set() cannot select each of them.
+  // Every name must be listed once, because use_instruction_set() selects a set by its name.
   const std::vector<std::string> names = instruction_sets();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }

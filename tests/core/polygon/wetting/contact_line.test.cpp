@@ -164,8 +164,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, OnADisc,
                          [](const auto& test) { return std::string(test.param.name); });
 
 /// Apart from the weight, only the forces f_0 and f_1 along the wall, on the two ends of the drop, have a
-/// torque about the disc's centre. So M g y = R (f_0 - f_1), where y is the offset of the drop's centroid
-/// from the disc's centre. In this way a disc holds two lobes of different weight.
+/// torque about the disc's centre. The balance is M g y = R (f_0 - f_1), where y is the offset of the drop's
+/// centroid from the disc's centre. In this way a disc holds two lobes of different weight.
 TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
   const Disc& disc = GetParam();
   double error[2];
