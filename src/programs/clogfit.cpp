@@ -75,7 +75,7 @@ first such rest, even if it moved on later.
 /// Runs python3 -m clogsweep COMMAND, which calls the C++ programs to compute numbers.
 int in_python(int argc, const char* const* argv) {
   const std::string command = argv[1];
-  // The user's own --programs comes later and overrides this.
+  // The user's own --programs comes later and overrides this value.
   std::vector<std::string> arguments = {command, "--programs", cli::own_folder()};
   arguments.insert(arguments.end(), argv + 2, argv + argc);
   cli::become_python("clogfit " + command, cli::find_python_module(), arguments);

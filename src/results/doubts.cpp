@@ -36,7 +36,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
   // the lower bound.
   const bool lacks_clogs =
       clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
-  // The worst case is that every failure hides a clog.
+  // Assumes the worst case, in which every failure hides a clog.
   const int num_failures = group.num_failed_counted + group.num_failed_somewhere;
   const bool do_failures_matter =
       num_failures > 0 &&

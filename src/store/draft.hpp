@@ -10,7 +10,8 @@
 
 #include "clog/store/output_path.hpp"
 
-/// Files that appear complete: written under a temporary name, saved to disk, then renamed.
+/// Files that become visible only when they are complete. They are written under a temporary name, saved to
+/// disk, then renamed.
 namespace clog::store {
 
 /// Removes the drafts of this path that killed processes left behind.

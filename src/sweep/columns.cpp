@@ -206,8 +206,8 @@ Column density_column() {
         obstacles.layout == ObstacleLayout::random && (obstacles.density.per_area || obstacles.density.share);
     return is_chosen ? outside(row.obstacle_density) : Value();
   };
-  // The default must be converted to a number per area, which depends on the gap, because it is a share of
-  // the saturated density.
+  // The default is a share of the saturated density, but the column holds a number per area, so the default
+  // depends on the gap.
   column.usual = [](const RunRow& row) -> Value {
     if (!row.parameters.obstacles.density.per_area) return outside(row.obstacle_density);
     RunParameters run = row.parameters;

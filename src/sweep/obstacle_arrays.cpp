@@ -106,7 +106,7 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     const NameLock lock(*name);
     if (lock.state() == NameLock::State::impossible) return build(run);
     if (lock.state() == NameLock::State::held) {
-      // The lock prevents that other processes build the array. Processes that wait for the lock do not
+      // The lock prevents other processes from building the array. Processes that wait for the lock do not
       // search for the array, because searching would slow the builder down.
       if (auto memory = SharedMemory::find(*name)) {
         is_waiting_worthwhile_ = true;

@@ -112,7 +112,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 /// @param within  see Comparisons; nullopt: half an obstacle spacing
 /// @param scales  units of the runs' laboratories. If there are several laboratories, and the two sides of
 /// each comparison have the same droplet, lengths are in mm. The droplet's diameter [mm] and tilt [degrees]
-/// then name the comparison. They replace the columns that follow from diameter and tilt.
+/// then name the comparison. These two replace the columns that follow from them.
 /// @throws std::invalid_argument if there are fewer than two sides
 /// @throws Error if two sides have no value in common, or if it is not clear which parameter sets belong
 /// together

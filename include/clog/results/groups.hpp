@@ -171,8 +171,8 @@ using LinesOf = std::function<std::vector<double>(const sweep::RunRow&)>;
 /// @param pooled  columns of max-time and boxes that do not separate groups. If several runs have equal seeds
 /// and arrays, only the run with the largest max-time counts. Runs with different `boxes` all count, because
 /// equal seeds then give different arrays.
-/// @param lines  returns, for a group's first row, the lines of passages in devices (their x; by default the
-/// rows of posts), and the lines for families [sigma]
+/// @param lines  returns lines [sigma] for a group, given its first row: the x of lines across a device (by
+/// default the rows of posts), or the distances of lines for families
 /// @throws Error if the rows do not record which droplets rested for longer than `dwell`
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0,

@@ -82,8 +82,8 @@ class SweepFiles {
   Clock::time_point begin_;
   bool is_published_ = false;
   Clock::time_point publication_begin_, publication_end_;
-  // Returns the stamp. This is the last member, so that it is destroyed first; this waits for the end of the
-  // publication.
+  // Returns the stamp. This future is the last member: it is destroyed first, and then waits for the end of
+  // the publication.
   std::future<std::optional<std::string>> publication_;
 
   double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }

@@ -93,7 +93,7 @@ class SweepState {
     }
   };
   std::unordered_map<std::int64_t, Past> past_;
-  SweepFiles files_;  // the last member, so that it is destroyed first; this waits for a publication that may
+  SweepFiles files_;  // the last member: it is destroyed first, and then waits for a publication that may
                       // read the runs
 
   sweep::RunRow new_row(std::int64_t task) const;

@@ -11,8 +11,8 @@ namespace clog::results {
 /// row's parameters are impossible.
 std::vector<Value> usual_parameters(const sweep::RunRow& row);
 
-/// Whether the row's value in this column is the one that `auto` would give with the row's other parameters,
-/// or that the row's preset gives.
+/// Whether the row's value in this column equals the value of `auto` with the row's other parameters, or the
+/// value of the row's preset.
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
 
 /// The value by which a column separates curves and comparisons. It is unset if the row's value is automatic

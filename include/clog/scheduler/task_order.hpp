@@ -11,8 +11,8 @@
 
 namespace clog::scheduler {
 
-/// Chooses the next task: the task that is expected to run longest. Starting long tasks first avoids that
-/// ranks idle at the end while a long task finishes.
+/// Chooses the next task: the task that is expected to run longest. Long tasks start first, so that ranks do
+/// not idle at the end while a long task finishes.
 ///
 /// The tasks of a group differ only in their seed, and are handed out in order. A group's expected run time
 /// is results::SetTimes::mean_seconds(). Tasks of a group without an ended task are expected to run longer

@@ -83,8 +83,8 @@ struct Column {
 
 /// All columns, in their order in files.
 std::span<const Column> columns();
-/// Name of the column with the length of a dwell of Dwells::longest. With `_at` or `_from` at its end, this
-/// name is that of the column with the place or the time at which the dwell began.
+/// Name of the column with the length of a dwell of Dwells::longest. With `_at` or `_from` appended, it is
+/// the name of the column with the place or the time at which this dwell began.
 std::string dwell_column(std::size_t place);
 /// @throws std::out_of_range if there is no column of this name
 const Column& column(std::string_view name);

@@ -19,8 +19,8 @@ constexpr double lobe_share = 0.02;
 /// Largest cosine of an angle that counts as a right angle. All segments across a bridge with straight sides
 /// are equally long. Without this tolerance, round-off would decide which of these segments is the shortest.
 constexpr double round_off = 1e-9;
-/// Whether `value` is at most its round-off. It is the product of a cosine or sine and two lengths. The
-/// argument is the squared lengths, so that no root is needed.
+/// Whether `value` is at most its round-off. The value is the product of a cosine or sine and two lengths.
+/// The function takes the squared lengths, so that no root is needed.
 bool is_hardly_positive(double value, double squared_lengths) {
   return value <= 0 || value * value <= round_off * round_off * squared_lengths;
 }

@@ -34,7 +34,7 @@ const Scene wall_scene = {.finding = Finding::sag,
                           .check = nothing_to_check,
                           .resolve = nothing_to_resolve,
                           // With this value, automatic parameters are those of a droplet among obstacles of
-                          // the usual size. So its sag is that of the droplets in an array.
+                          // the usual size. So the sag applies to the droplets in an array.
                           .sharpest_bend = smallest_diameter,
                           .density = no_density,
                           .walls = flat_wall,

@@ -16,10 +16,10 @@ struct Neck {
 /// The thinnest neck of a polygon, if it is narrower than `below` [sigma].
 ///
 /// A neck is a segment inside the polygon that joins two points of the contour. Its length is a local minimum
-/// when either end moves along the contour. It divides the polygon into two lobes. Each lobe, if it were a
-/// separate round drop, would be at least twice as wide as the neck. One end of such a segment is a vertex at
-/// which the contour does not turn outwards, so only segments from these vertices are examined. Therefore a
-/// convex contour with any number of vertices has no neck, except between parallel straight sides.
+/// when either end moves along the contour. A neck divides the polygon into two lobes. Each lobe, if it were
+/// a separate round drop, would be at least twice as wide as the neck. One end of such a segment is a vertex
+/// at which the contour does not turn outwards, so only segments from these vertices are examined. Therefore
+/// a convex contour with any number of vertices has no neck, except between parallel straight sides.
 /// @param position  counter-clockwise, without self-crossings, all x then all y [sigma]
 Neck thinnest_neck(const Eigen::ArrayXd& position, double below = std::numeric_limits<double>::infinity());
 

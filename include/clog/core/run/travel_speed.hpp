@@ -30,10 +30,10 @@ struct TravelSpeed {
 TravelSpeed travel_speed(std::span<const TravelSample> samples);
 
 /// Number of values at the beginning to exclude from a mean (MSER-5: White, Simulation 69, 323 (1997)). It is
-/// the multiple of 5 after which the mean of the rest has the smallest standard error, if means of 5 values
-/// are independent. The search covers only the first half of the values. Returns nullopt for fewer than 50
-/// values. Also returns nullopt if the best number is at the end of the first half, because the transient may
-/// then be longer.
+/// the multiple of 5 after which the mean of the remaining values has the smallest standard error. The
+/// standard error assumes that means of 5 successive values are independent. The search covers only the first
+/// half of the values. Returns nullopt for fewer than 50 values. Also returns nullopt if the best number is
+/// at the end of the first half, because the transient may then be longer.
 std::optional<std::size_t> transient_length(std::span<const double> values);
 
 /// Standard error of the mean of correlated values (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)).

@@ -22,10 +22,10 @@ struct CommensurateLattice {
   double angle = 0;   ///< t [degrees]
 };
 
-/// Largest deviation of a lattice's tilt from the requested one [degrees].
+/// Largest deviation of a lattice's tilt from the requested tilt [degrees].
 inline constexpr double largest_angle_error = 0.1;
-/// Largest allowed tilt [degrees]. For square and triangular lattices, a larger tilt gives the same lattice
-/// as a smaller one.
+/// Largest allowed tilt [degrees]. For square and triangular lattices, every larger tilt gives the same
+/// lattice as some smaller tilt.
 double largest_tilt(LatticeKind kind);
 
 /// The lattice with the tilt nearest to lattice_angle. Its periods are at most `box` and `length` (0: `box`),

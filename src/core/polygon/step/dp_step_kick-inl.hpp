@@ -261,7 +261,7 @@ HWY_INLINE Pair kick_force(const Corner& c, const Pair& chord, const Pair& push,
 template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool implicit_pressure>
 Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays) {
-  const StepArrays a = arrays;  // a local copy, which the compiler knows that stores cannot change
+  const StepArrays a = arrays;  // a local copy: the compiler knows that stores do not change it
   const InterfaceVectors along{all(interface.line_tension), all(interface.spring), all(interface.spreading),
                                all(interface.half_pressure), all(interface.vertex_weight)};
   const Pair centre{all(3 * force.centre_x), all(3 * force.centre_y)};

@@ -18,11 +18,11 @@ namespace clog {
 /// d_s^2/2 would pass through the edge and then be pushed onward. To prevent this, a vertex is recorded
 /// (SelfCrossing) when its path passes through the inside of an edge. The record ends when the vertex passes
 /// back through this edge, or through a neighbouring edge to which it has slid. Until then the vertex has the
-/// energy k_c [(d_s + D)^2 - d_s^2]/2. Its depth D is its distance from the edge; near an end of the edges D
-/// is smaller (CrossingDepth). Other contacts between the vertex or its edges and these edges are muted,
-/// because unsigned distances do not distinguish the sides. Instead, the muted contacts are computed as if
-/// the vertex were nearer to the edge by D, so that it is usually on the edge. The energy is therefore
-/// continuous where a vertex passes through an edge, comes back, or slips off an end.
+/// energy k_c [(d_s + D)^2 - d_s^2]/2. The depth D is the distance of the vertex from the edge; near an end
+/// of the edges D is smaller (CrossingDepth). Other contacts of the vertex and its own edges with the crossed
+/// edges are muted, because unsigned distances do not distinguish the sides. Instead, the muted contacts are
+/// computed as if the vertex were nearer to the edge by D, so that it is usually on the edge. The energy is
+/// therefore continuous where a vertex passes through an edge, comes back, or slips off an end.
 class SelfCrossings {
  public:
   /// The last motion of the vertices: they moved to their present places with these velocities, for this
