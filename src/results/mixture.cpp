@@ -100,8 +100,8 @@ class Key {
   const sweep::Column* column_ = nullptr;
 };
 
-/// The parameters in which groups differ, except automatic parameters. A parameter that only one of the
-/// models has counts only if it differs between the groups of this model.
+/// The parameters in which groups differ, except automatic parameters. A parameter that applies only to some
+/// of the groups counts only if it differs between these groups.
 std::string differences(const std::vector<const Group*>& groups) {
   std::vector<std::string> names;
   for (const sweep::Column* column : group_columns()) {

@@ -41,8 +41,8 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
   wedges_ = wedges_in(state.frame, forces_->wedges());
 }
 
-/// Computes the force as the velocity after a kick from rest, without drag. The half step of the kick is
-/// chosen such that this velocity equals the force.
+/// Computes the force as the velocity after a kick from rest, without drag. The time of the kick is chosen so
+/// that this velocity equals the force.
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   assert(looked_at_.size() > 0);
   const kernel::StepArrays& a = memory_.arrays();
