@@ -12,7 +12,7 @@ from metadata import JOURNAL, STOPPED, Stopped
 from samples import FILE, REPORTS, VERIFY, check_complete, in_child, results, stored_rows
 from support import FAMILIES, SNAPSHOT_OF_A_DAUGHTER
 
-# Settings of other sweeps. The journals of these sweeps do not belong to this sweep.
+# Settings of other sweeps. Their journals do not belong to the tested sweep.
 FOREIGN = ["max-time=9000", "vertices=48", "box=25"]
 # Families whose runs take seconds, with snapshots of their daughters
 DAUGHTERS = [*FAMILIES[:-2], "max-time=6000", "seeds=1..2", "--report-seconds=0.1", "--output", FILE]

@@ -3,7 +3,7 @@
 sources, or in all sources.
 
 --changed selects changed sources (known.py prints since when), and for each changed header a source that includes it.
-If there are more than N sources, it selects N of them, and others at the next commit. Exit code 1: there is a
+If there are more than N sources, only N of them are checked, and others at the next commit. Exit code 1: there is a
 finding."""
 
 import argparse

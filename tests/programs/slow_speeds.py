@@ -33,7 +33,8 @@ class Speeds(ProgramTest):
         short, middle, long = groups
         for one, other in ((short, middle), (short, long), (middle, long)):
             self.assert_equal(one, other)
-        # In short runs, the mean of the speeds of single runs is known to be too high. The test must detect this.
+        # In short runs, the mean of the speeds of single runs is known to be too high. The number of runs must suffice
+        # to detect this error.
         bias = short["relative_speed"] - long["relative_speed"]
         self.assertGreater(bias, 4 * math.hypot(short["relative_speed_error"], long["relative_speed_error"]))
 

@@ -58,7 +58,7 @@ SNAPSHOT_OF_A_DAUGHTER = (0x636C6F6766000001).to_bytes(8, "little")
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
-# The folder of the sweeps that several suites read. CTest empties it before it starts the first of these suites.
+# The folder of the sweeps that several suites read. CTest empties this folder before it starts the first of the suites.
 if "CLOG_SHARED_SWEEPS" in os.environ:
     SHARED = pathlib.Path(os.environ["CLOG_SHARED_SWEEPS"])
     SHARED.mkdir(parents=True, exist_ok=True)

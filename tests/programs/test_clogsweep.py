@@ -177,7 +177,7 @@ class Sweep(ProgramTest):
                          r"^# s.h5 has 6 of 60 runs; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
         of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
-        # No runs are left whose cost could be estimated.
+        # All runs of this command are finished, so there is nothing to estimate.
         printed = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
         self.assertEqual(printed, f"# s.h5 has all 6 runs, which took {hours:.2g} core-hours; nothing is left to do")
 

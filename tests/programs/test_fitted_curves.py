@@ -17,8 +17,8 @@ from clogsweep.curves import answer, features, model, points, table  # noqa: E40
 from clogsweep.tools.errors import UserError  # noqa: E402
 
 # RECORDS are outputs of `clogfit curve` (git 0b3b912ecf24) for sweeps with invented distances. Each record contains the
-# command, the output, and the clogs of each point by mechanism. Of the output it has every fourth grid point of a
-# curve, or every thirteenth of a surface.
+# command, the output, and the clogs of each point by mechanism. The output in a record has only every fourth grid point
+# of a curve, or every thirteenth of a surface.
 RECORDS = json.loads((pathlib.Path(__file__).parent / "data" / "curves.json").read_text())["records"]
 LENGTH = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 

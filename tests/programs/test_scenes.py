@@ -1,5 +1,5 @@
-"""Tests sweeps of channels, flat walls and user-supplied circles. Such sweeps have the same keys as single runs, and a
-row for each run."""
+"""Tests sweeps of channels, flat walls and user-supplied circles. The keys of these sweeps are those of single runs,
+and each run has a row."""
 
 import json
 import math
@@ -285,7 +285,7 @@ class OwnCircles(ProgramTest):
         self.assertEqual({row.obstacle_filling for row in rows}, {"file"})
         self.assertEqual({row.obstacle_density for row in rows}, {0.06})
         self.assertAlmostEqual(rows[0].obstacle_gap, np.hypot(1.2, 0.6) - 0.4)
-        # clogrun must compute the same run.
+        # clogrun array must give the result that is in the sweep's row.
         self.succeed("clogrun", "array", *OWN, "line-tension=1", "--output", "r.h5")
         run, = read_rows(self.folder / "r.h5")
         self.assertEqual((run.distance, run.lateral_displacement, run.obstacles),

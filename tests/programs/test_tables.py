@@ -190,7 +190,7 @@ class Units(ProgramTest):
                 else:
                     self.refuse("clogsweep", f"obstacles={self.write('posts.csv', text)}", *OWN,
                                 words=[f"posts.csv line {place + 1}", "below circles", "above all circles"])
-        # Concatenated files have the same line twice.
+        # In concatenated files, the line with the units occurs again and again.
         self.assertEqual(self.circles(units + lines[0] + units + lines[1] + units + lines[2]), half)
         self.refuse("clogsweep",
                     f"obstacles={self.write('posts.csv', units + '# units=um droplet=3um' + chr(10) + self.CIRCLES)}",

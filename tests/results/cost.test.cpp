@@ -197,9 +197,9 @@ double coverage(int num_sets) {
 }
 
 TEST(SweepCost, CoversTheTruthWhereShortAndLongRunsMix) {
-  EXPECT_GT(coverage(1), 0.8);   // The only set has the mixture.
-  EXPECT_GT(coverage(3), 0.9);   // Each kind of run is a set.
-  EXPECT_GT(coverage(24), 0.9);  // One run of each set is known.
+  EXPECT_GT(coverage(1), 0.8);   // There is one set, which contains all kinds of runs.
+  EXPECT_GT(coverage(3), 0.9);   // There is one set for each kind of run.
+  EXPECT_GT(coverage(24), 0.9);  // There are so many sets that only one run of each is known.
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 """Judges statements of the article (Cheng et al.), section 4.1 and appendices A and B: on measured quantities and on
-passages through channels. Nothing in such a passage is random, so there are no confidence intervals."""
+passages through channels. Nothing in a passage through a channel is random, so there are no confidence intervals."""
 
 import math
 from typing import Any

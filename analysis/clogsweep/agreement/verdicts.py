@@ -15,7 +15,7 @@ from ..tools.hints import Group
 AGREES, IN_KIND, FITTED = "agrees", "qualitatively", "by construction"
 FORCED, BY_MESH = "agrees with an added force", "artefact of the mesh"
 DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
-# The summary of the table has this order.
+# The summary of the table lists the verdicts in this order.
 VERDICTS = [AGREES, IN_KIND, FORCED, BY_MESH, FITTED, DOES_NOT, NOT_KNOWN, NOT_RUN]
 
 

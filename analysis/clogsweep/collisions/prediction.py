@@ -1,6 +1,6 @@
 """Predicts clogging lengths from droplets that fall onto one or two obstacles. Simulations show which pairs of
-obstacles, and which single obstacles, hold a droplet. The prediction follows from the number of such pairs and
-obstacles in an array.
+obstacles, and which single obstacles, hold a droplet. The prediction follows from the number of pairs and of
+single obstacles in an array that would hold a droplet.
 
 docs/reference/analysis.md describes the law and its limits.
 """

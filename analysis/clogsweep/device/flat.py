@@ -21,7 +21,7 @@ LINK = "{http://www.w3.org/1999/xlink}href"
 NO_SHAPES = ("text", "image", "foreignObject")
 PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end", "mix-blend-mode", "isolation",
           "enable-background")
-# CSS that librsvg does not know. In a browser it would move shapes or change their size or colour.
+# CSS that librsvg does not know, and that would move shapes or change their size or colour in a browser.
 TRANSFORMS = {"transform-origin": r"(?<![\w-])transform-origin\s*[:=]",
               "transform-box": r"(?<![\w-])transform-box\s*[:=]",
               "translate, rotate or scale": r"(?<![\w-])(?:translate|rotate|scale)\s*:"}

@@ -287,7 +287,7 @@ def size_for(path: pathlib.Path | None) -> str:
 
 
 def path_of(output: pathlib.Path) -> pathlib.Path:
-    """The file of a film. The file has the requested ending. If none is requested, it ends in .mp4 if ffmpeg is
+    """The file of a film, with the requested ending. If no ending is requested, the file ends in .mp4 if ffmpeg is
     installed, and in .gif otherwise.
     @throws UserError  if such a film cannot be made, or if the file exists"""
     outputs.refuse_ending(output, *ENDINGS)

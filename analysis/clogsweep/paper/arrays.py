@@ -25,7 +25,7 @@ from .runner import Runner
 if TYPE_CHECKING:
     import pandas
 
-# clogfit's mean speed whose start is not chosen from the data.
+# The column of clogfit with mean speeds from a fixed time on. In other columns this time is chosen from the data.
 STEADY = "relative_speed_steady"
 SPEED_NOTES = [r"distance divided by time, from $5\sigma/v_t$ on; bars: standard errors"]
 # Columns of clogfit with the numbers of droplets that the mesh holds, and of clogs by mechanism.

@@ -223,7 +223,7 @@ def observed_distances(rows: Records) -> Numbers:
 
 
 def warn_of_failures(rows: Records, outcome: str) -> None:
-    """If runs failed, prints how many. @param outcome  word for that as which failed runs count, such as flowing"""
+    """If runs failed, prints how many. @param outcome  the word for the assumed outcome of these runs, such as whole"""
     failed = rows[rows["status"] == b"failed"]
     if len(failed):
         print(f"{len(failed)} of {len(rows)} runs failed and count as {outcome}; the first one: "

@@ -1,5 +1,5 @@
-"""Runs clogsweep round by round. The points of a round are written to the disk before the round starts, so that it
-continues with the same points after a kill."""
+"""Runs clogsweep round by round. The points of a round are written to the disk before the round starts, so that a round
+that is killed continues with the same points."""
 
 import os
 import pathlib

@@ -82,8 +82,8 @@ TEST(SampleObstacles, FillsALongArrayAsASquareOne) {
   EXPECT_EQ(array.period().across(), 10);
   EXPECT_GE(brute_force_gap(array), 0.4);
   EXPECT_DOUBLE_EQ(array.smallest_gap(), brute_force_gap(array));
-  // The expected number follows from Feder's coverage. The number scatters by 18 here, which is 0.2 times the
-  // square root of the area divided by the spacing.
+  // The expected number follows from Feder's coverage. In this array the number of obstacles scatters by 18,
+  // which is 0.2 times the square root of the area, divided by the spacing.
   const double expected = 0.547069 * 4000 / (std::numbers::pi / 4 * 0.49);
   EXPECT_NEAR(static_cast<double>(array.obstacles().size()), expected, 5 * 18);
   expect_no_room(array);
