@@ -37,7 +37,7 @@ class Tree {
     for (const Member& member : family.members) members_.emplace(member.path, &member);
   }
 
-  /// Calls visit(member, true) for each droplet that is the first of its line of descent to pass the line.
+  /// Calls visit(member, true) for each droplet that passes the line if none of its ancestors has passed.
   /// Calls visit(member, false) for each droplet that ends before the line.
   template <class Visit>
   void at_line(double distance, const Visit& visit, const std::string& path = "") const {
@@ -117,7 +117,7 @@ std::vector<int> numbers_at(double distance, const std::vector<Tree>& trees) {
 }
 
 /// Product-limit estimates at the lines.
-/// @param leaves  of all families
+/// @param leaves  leaves of all families
 /// @param times  number of times that each family counts
 class ProductLimit {
  public:
@@ -128,7 +128,7 @@ class ProductLimit {
     std::ranges::sort(steps_, {}, &Step::reach);
   }
 
-  /// Shares that pass the lines. Beyond the last droplet the share stays as it is.
+  /// The shares of the area that pass the lines. Beyond the last droplet the share is constant.
   std::vector<double> at(const std::vector<double>& lines, const std::vector<int>& times) const {
     double at_risk = 0;
     for (const Step& step : steps_) at_risk += times[step.family] * step.area;
@@ -158,7 +158,7 @@ class ProductLimit {
   std::vector<Step> steps_;
 };
 
-/// Percentiles of resampled values. NaN if there are too few of them.
+/// Percentiles of resampled values; NaN if there are too few values.
 fit::Interval percentiles(std::vector<double> values, double confidence) {
   std::ranges::sort(values);
   const double last = static_cast<double>(values.size()) - 1, tail = (1 - confidence) / 2 * last;
@@ -166,14 +166,15 @@ fit::Interval percentiles(std::vector<double> values, double confidence) {
   return {values[static_cast<std::size_t>(tail)], values[static_cast<std::size_t>(std::ceil(last - tail))]};
 }
 
-/// Interval of a share that is 0 or 1 in all of some number of families, by Clopper and Pearson.
+/// Interval by Clopper and Pearson of a share that is 0 in each of `num_families` families, or 1 in each of
+/// them.
 fit::Interval without_variation(double share, int num_families, double confidence) {
   if (num_families == 0) return {no_number, no_number};
   const double certain = std::pow((1 - confidence) / 2, 1.0 / num_families);
   return share == 0 ? fit::Interval{0, 1 - certain} : fit::Interval{certain, 1};
 }
 
-/// Number of families of which all area passes a line, or of which all area ends before it.
+/// Number of families whose whole area passes a line (`pass`), or whose whole area ends before the line.
 int num_alike(const std::vector<std::vector<Leaf>>& leaves, double distance, bool pass) {
   return static_cast<int>(std::ranges::count_if(leaves, [&](const std::vector<Leaf>& family) {
     return std::ranges::all_of(family, [&](const Leaf& leaf) {
@@ -183,7 +184,7 @@ int num_alike(const std::vector<std::vector<Leaf>>& leaves, double distance, boo
   }));
 }
 
-/// Sets shares that pass, and intervals from resampled ancestors.
+/// Sets the shares that pass the lines, and the intervals from resampled ancestors.
 void set_estimates(const std::vector<Tree>& trees, const std::vector<std::vector<Leaf>>& leaves,
                    double confidence, const std::vector<double>& distances, std::vector<FamilyLine>& lines) {
   constexpr int num_resamples = 2000;
