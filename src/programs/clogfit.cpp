@@ -64,8 +64,9 @@ the rows' angle: 1 for droplets that follow the rows (bump mode), 0 for droplets
 lambda by least squares (as published, biased), Weibull's shape with its p-value, and capillary numbers; json also
 contains the survival P(r).
 
-In rows with the same array, runs of the same seed met the same obstacles, so the errors of these rows are correlated,
-and overlapping intervals do not mean that the lengths agree. Use clogfit compare, which pairs runs by seed.
+If several lines of the table have the same arrays, their runs of equal seed met the same obstacles. So the errors of
+these lines are correlated, and overlapping intervals do not mean that the lengths agree. Use clogfit compare, which
+pairs runs by seed.
 
 An experiment calls a droplet clogged if it has not moved for a waiting time. --dwell T applies this rule: a droplet
 that advanced by at most dwell-length (0.05 sigma by default) for longer than T counts as clogged at the place of its

@@ -34,8 +34,8 @@ TEST(Settings, DefaultsAreThoseOfTheParameters) {
   }
 }
 
-/// The settings have the ratio of the preset's springs. This ratio must not be stored if the user chose other
-/// springs or gave a stiffness.
+/// A preset sets perimeter-stiffness-ratio. The config must not contain the preset's ratio if the user chose
+/// other springs or gave a stiffness.
 TEST(Settings, AreReadBackForEveryPresetWithOtherSprings) {
   for (const std::string& preset : preset_names())
     for (const auto& [key, text] : {std::pair{"perimeter-spring", "mean"},

@@ -75,7 +75,7 @@ def with_variants(found: Mapping[Family, Finding]) -> Finding:
 
 
 def words_of_variants(found: Sequence[tuple[str, Finding]]) -> tuple[str, str]:
-    """Two texts: the verdicts on variants with values, and these verdicts without values.
+    """Two texts: the verdicts on the variants, each followed by its value, and the same verdicts without values.
     @param found  names and findings"""
     variants = "; ".join(f"{name}: {finding.verdict}" + (f", {finding.value}" if finding.value else "")
                          for name, finding in found)

@@ -37,8 +37,8 @@ class ReducedUnits(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """The conditions of a passage that do not belong to the droplet. Each field has the name of a column. The name of
-    the key is the name of the column with hyphens in place of underscores."""
+    """The conditions of a passage that do not belong to the droplet. Each field has the name of a column of the table
+    of runs. The name of the key is the name of the column with hyphens in place of underscores."""
 
     orifice: float
     wedge_angle: float

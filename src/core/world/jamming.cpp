@@ -10,11 +10,11 @@ namespace clog {
 namespace {
 
 /// Two surfaces are at least the gap apart if discs of diameter + gap do not overlap. The sum diameter + gap
-/// is called the spacing. All numbers below follow from the smallest and the widest spacing, and from the
-/// area.
+/// is called the spacing. All numbers below follow from the smallest and the widest spacing, and from
+/// the area of the array's period.
 struct Spacings {
   double smallest, widest;
-  double edge;  // edge of a square of the same area
+  double edge;  // edge of a square with the area of the period
 };
 
 Spacings spacings_of(const ObstacleParameters& obstacles) {
