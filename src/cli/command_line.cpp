@@ -34,7 +34,7 @@ bool is_key(const std::string& name) {
   return std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) { return key.name == name; });
 }
 
-/// Name of the option that collects surplus words. It contains a blank, so a user cannot give it as an
+/// Name of the option that collects surplus words. The name contains a blank, so a user cannot give this
 /// option.
 constexpr const char* surplus_words = "surplus words";
 
@@ -57,7 +57,7 @@ bool begins_like_key(const std::string& word) {
   return equals != std::string::npos && equals > 0 && word.find_first_of("./ ") > equals;
 }
 
-/// The command of another program with this name; empty if there is none.
+/// The command with this name that another program has; empty if there is none.
 std::string command_elsewhere(const std::string& word) {
   static const std::map<std::string_view, std::string_view> programs = {
       {"compare", "clogfit"},   {"curve", "clogfit"},     {"lengths", "clogfit"},  {"units", "clogfit"},
@@ -119,7 +119,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
   text_ = program_;
   const int first = 1 + static_cast<int>(std::ranges::count(program_, ' '));
   for (int i = first; i < argc; ++i) {
-    // `key=value` means `--key=value`, except where it is the value of the option before it: --output a=1.h5.
+    // `key=value` means `--key=value`, unless the option before it takes it as its value: --output a=1.h5.
     const bool is_setting = sweep_keys_ == SweepKeys::accepted && is_assignment(argv[i]) &&
                             !(i > first && awaits_value(argv[i - 1]));
     words.push_back((is_setting ? "--" : "") + std::string(argv[i]));
@@ -216,8 +216,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
                              : fmt::format("; did you mean {}?", joined(meant, " or "))));
 }
 
-/// Boost would report such lines, too. But Boost 1.74 replaces %names% in its message, and if the line
-/// contains such a name, this replacement never ends.
+/// Refuses lines of a config without a value. Boost would report them, too, but Boost 1.74 replaces %names%
+/// in its message, and this replacement never ends if the line itself contains %name%.
 static void refuse_lines_without_value(const std::string& path, const std::string& text) {
   std::istringstream lines(text);
   int number = 0;

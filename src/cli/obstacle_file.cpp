@@ -50,7 +50,7 @@ struct Scale {
   std::string unit;  ///< unit of the numbers; empty: droplet diameters
   double droplet_metres = 0;
 
-  /// Rounds to a few digits, so that a file in other units gives the same bits.
+  /// Rounds to a few digits, so that the same circles in other units give the same bits.
   double in_diameters(double number) const {
     if (unit.empty()) return number;
     constexpr int digits = 13;
@@ -91,7 +91,7 @@ struct Columns {
 
 /// Stores the column that a cell of the header names.
 /// @return whether the reader needs this column
-/// @throws Error if the column occurs twice, or with another unit than the others
+/// @throws Error if the column occurs twice, or if its unit differs from that of the other columns
 bool take_column(Columns& columns, int place, const std::string& cell) {
   const auto [name, unit] = console::column_head(cell);
   int* const column = name == "x"                                            ? &columns.x
@@ -215,8 +215,8 @@ Obstacle parse_circle(console::TableLine line, const Columns& columns, const Sca
   return circle;
 }
 
-/// Parts of a name like posts.csv@0.8mm: the file, and the droplet's diameter [m], to which the circles are
-/// scaled.
+/// Parts of a name like posts.csv@0.8mm: the file, and the diameter [m] of the droplet to which the circles
+/// are scaled.
 std::pair<std::string, std::optional<double>> parts_of(const std::string& name) {
   const auto at = name.rfind('@');
   std::error_code none;

@@ -15,7 +15,7 @@
 namespace clog::cli {
 namespace {
 
-/// Columns that name keys. A column without a name, such as pandas' index, is ignored.
+/// The columns whose heads name keys. A column without a head, such as the index of pandas, is ignored.
 std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < header.size(); ++i) try {
@@ -30,15 +30,16 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
   return columns;
 }
 
-/// The value of a key in a cell. A comma is a decimal comma unless commas separate the cells. pandas writes
-/// the integers of a column with an empty cell as 64.0 or 64,0. @throws Error if it is not clear whether a
-/// comma is decimal or separates the items of a list, or if other numbers have decimal points
+/// The value of a key in a cell. A comma is a decimal comma unless commas separate the cells. If a column has
+/// an empty cell, pandas writes the column's integers as 64.0 or 64,0; this function removes the zero.
+/// @throws Error if it is not clear whether a comma is decimal or separates the items of a list, or if other
+/// numbers have decimal points
 std::string value_of(const sweep::Key& key, const std::string& cell, char separator,
                      console::DecimalCommas& decimal_commas) {
   const bool is_integer = key.kind == ValueKind::integer;
   const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
   const auto commas = std::ranges::count(cell, ',');
-  // A comma in a list of seeds is never decimal: the list may end with 0.
+  // A comma in a list of seeds is never a decimal comma, even if 0 follows it.
   const bool may_be_decimal = separator != ',' && commas == 1 && !key.is_ensemble();
   const auto with_point = [&](const std::string& number) {
     return decimal_commas.with_point(key.name, number, separator);
@@ -61,7 +62,7 @@ std::string value_of(const sweep::Key& key, const std::string& cell, char separa
   return with_point(number) + unit;
 }
 
-/// The values of the keys, which Settings::set_points() checks.
+/// The values of the keys, unchecked; Settings::set_points() checks them.
 /// @param num_columns  number of columns of the first line. @throws Error  if a comma is ambiguous
 std::vector<std::string> values_of(const console::TableLine& line, const std::vector<std::string>& keys,
                                    const std::vector<std::size_t>& columns, std::size_t num_columns,

@@ -40,7 +40,7 @@ int run_program(const std::string& program, const std::function<int()>& body) {
   } catch (const Stopped& stop) {
     say(program + ": " + stop.what());
     return exit_incomplete;
-  } catch (const std::ios_base::failure&) {  // the failure of std::cout
+  } catch (const std::ios_base::failure&) {  // printing to std::cout has failed
     if (is_reader_gone()) return exit_reader_gone;
     say(program + ": cannot write the output; the disk may be full");
     return exit_user_fault;

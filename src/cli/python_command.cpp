@@ -18,7 +18,7 @@ namespace {
 
 const std::string python_path = "PYTHONPATH";
 
-/// A value of PYTHONPATH that lets Python search this folder for modules first.
+/// A value of PYTHONPATH with which Python first searches this folder for modules.
 std::string with_others(const std::filesystem::path& folder) {
   const char* others = std::getenv(python_path.c_str());
   return others && *others ? folder.string() + ":" + others : folder.string();

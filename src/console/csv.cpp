@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r";
 
-/// U+00A0, U+202F and U+2007 keep numbers and units on one line. U+FEFF occurs in files that were joined.
+/// U+00A0, U+202F and U+2007 keep numbers and units on one line. U+FEFF occurs within files that were joined
+/// from several files.
 constexpr std::string_view other_blanks[] = {"\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x87", "\xef\xbb\xbf"};
 
 /// Whether each byte above ASCII belongs to a character of UTF-8.
@@ -118,18 +119,18 @@ class Splitter {
   }
 };
 
-/// Error words of spreadsheets that end neither with ! nor with ?, in lower case. Most of them say, in the
-/// languages of Excel and LibreOffice, that a value is not available.
+/// Error words of spreadsheets that end neither with ! nor with ?, in lower case. Most of them mean "not
+/// available" in a language of Excel or LibreOffice.
 constexpr std::string_view other_error_words[] = {"#n/a", "#na",  "#nv",  "#n/d",      "#n/b",
                                                   "#i/t", "#Н/Д", "#yok", "#hiÁnyzik", "#getting_data"};
 
-/// Whether the cell consists of #. Excel shows ### for values that are wider than their column.
+/// Whether the cell consists of # only. Excel shows ### for values that are wider than their column.
 bool is_row_of_hashes(std::string_view cell) {
   constexpr std::size_t fewest = 2;
   return cell.size() >= fewest && cell.find_first_not_of('#') == std::string_view::npos;
 }
 
-/// The first cell of a line that begins with #, without its quote.
+/// The first cell of a line that begins with #, without quotes around the cell.
 /// @param separator  of the table; '\0' if no line of the table precedes this line
 std::string_view first_cell(std::string_view comment, char separator) {
   const bool is_quoted = comment.starts_with('"');
@@ -148,14 +149,14 @@ std::string_view first_cell(std::string_view comment, char separator) {
       place + 1, cell));
 }
 
-/// @throws Error  if a cell of a line of the table is an error of a spreadsheet
+/// @throws Error  if a cell is an error of a spreadsheet
 void refuse_error_words(const std::vector<std::string>& cells) {
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (is_error_word(cells[i]) || is_row_of_hashes(cells[i])) refuse_error_word(cells[i], i);
 }
 
-/// @throws Error  if a line that begins with # is a line of the table, and its first cell is an error of a
-/// spreadsheet
+/// @throws Error  if a line that begins with # is no comment, but a line of the table with a spreadsheet
+/// error in its first cell
 void refuse_lost_line(std::string_view comment, char separator) {
   const std::string cell = trimmed(first_cell(comment, separator));
   const bool may_be_separated_by_blanks = separator == ' ' || separator == '\0';
@@ -174,7 +175,7 @@ void name_place(const std::string& path, int number, const std::function<void()>
   }
 }
 
-/// Calls each() for blank lines of a table with one column: in such a table, a blank line is an empty cell.
+/// Calls each() for the blank lines of a table with one column, in which a blank line is an empty cell.
 void give_empty_cells(const std::vector<int>& numbers,
                       const std::function<void(const TableLine& line)>& each) {
   for (const int number : numbers) each({.number = number, .cells = {""}, .separator = ' '});
@@ -215,7 +216,7 @@ bool is_error_word(std::string_view cell) {
   const std::string word = in_lower_case(std::string(cell));
   if (std::ranges::find(other_error_words, word) != std::end(other_error_words)) return true;
   for (const std::string_view error :
-       {"err:", "fehler:", "erreur:"})  // LibreOffice numbers its errors: Err:502
+       {"err:", "fehler:", "erreur:"})  // errors of LibreOffice have numbers: Err:502
     if (word.starts_with(error) && word.size() > error.size() &&
         word.find_first_not_of("0123456789", error.size()) == std::string::npos)
       return true;

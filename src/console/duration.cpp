@@ -7,7 +7,7 @@
 namespace clog::console {
 
 std::string readable_duration(double seconds) {
-  // A time of a few minutes also shows seconds. In whole minutes the displayed time would seem to jump.
+  // Times of a few minutes also show seconds. With whole minutes only, the displayed time would seem to jump.
   constexpr double long_in_seconds = 120, long_in_minutes = 600;
   if (seconds < long_in_seconds - 0.5) return fmt::format("{:.0f} s", seconds);
   if (seconds < long_in_minutes - 0.5) {

@@ -8,7 +8,7 @@ namespace {
 
 unsigned char byte_at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
 
-/// Number of bytes of a UTF-8 character with this first byte; 0 if there is none.
+/// Number of bytes of a UTF-8 character with this first byte; 0 if no character begins with this byte.
 std::size_t length_by(unsigned char first) {
   if (first < 0x80) return 1;
   if (first >= 0xc2 && first <= 0xdf) return 2;

@@ -3,7 +3,7 @@
 namespace clog::console {
 namespace {
 
-volatile std::sig_atomic_t stop_flag = 0;  // the only thing that a signal handler may write
+volatile std::sig_atomic_t stop_flag = 0;  // a signal handler may write only variables of this type
 
 void raise_stop_flag(int) { stop_flag = 1; }
 
@@ -14,8 +14,7 @@ void look_at_hangup() {
   hangup_was_ignored = sigaction(SIGHUP, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// Runs before the initialisation of shared libraries, because there UCX, a library of Open MPI, takes over
-/// SIGHUP.
+/// Runs before shared libraries are initialised, because UCX, a library of Open MPI, then takes over SIGHUP.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const look_first)() = look_at_hangup;
 
 }  // namespace

@@ -42,7 +42,7 @@ void wait_for(const Descriptor& file, const std::string& path) {
   } while (poll(&state, 1, milliseconds) <= 0);
 }
 
-/// Reads without blocking, so that a signal can end the program while a pipe has no writer.
+/// Reads without blocking, so that a signal can end the program even if nobody writes to a pipe.
 std::string read_to_end(const std::string& path) {
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!file.is_open()) refuse(path, errno);

@@ -29,7 +29,7 @@ bool is_set(const char* name) { return std::getenv(name) != nullptr; }
 
 bool is_open_mpi() { return scheduler::Communicator::library_version().starts_with("Open MPI"); }
 
-/// Number of processes that the launcher reports; 0 if unknown.
+/// The number in an environment variable of the launcher; 0 if unknown.
 int number_in(const char* name) {
   const char* text = std::getenv(name);
   return text ? std::atoi(text) : 0;

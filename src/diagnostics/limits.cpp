@@ -33,7 +33,7 @@ std::optional<double> only_number(const fs::path& path) {
   std::ifstream file(path);
   double number = 0;
   if (file >> number) return number;
-  return {};  // there is no such file, or no limit ("max")
+  return {};  // the file does not exist, or has no limit ("max")
 }
 
 /// Control groups of the process, from the innermost outwards. In a container, the innermost groups may be

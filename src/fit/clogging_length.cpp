@@ -23,18 +23,19 @@ Interval chi_squared_interval(double total_distance, double degrees_of_freedom, 
   return {2 * total_distance / quantile(complement(chi2, tail)), 2 * total_distance / quantile(chi2, tail)};
 }
 
-/// A droplet that was pushed back at its release counts as not moved; NaN stays NaN.
+/// The distance of a run; 0 for a droplet that was pushed back at its release. NaN stays NaN.
 double way(const Observation& run) { return run.distance < 0 ? 0 : run.distance; }
 
-/// sqrt(2 (x + exp(-x) - 1)) with the sign of x. For small x its series avoids cancellation.
+/// sqrt(2 (x + exp(-x) - 1)) with the sign of x. For small x the function uses the series, which avoids
+/// cancellation.
 double signed_root(double x) {
   constexpr double small = 1e-3;  // the next term of the series is x^4/360
   if (std::abs(x) < small) return x * std::sqrt(1 - x / 3 + x * x / 12 - x * x * x / 60);
   return std::copysign(std::sqrt(2 * (x + std::expm1(-x))), x);
 }
 
-/// In units of the estimate, u = lambda/(S/d), the log-likelihood falls by d (log u + 1/u - 1). Twice this is
-/// d signed_root(log u)^2.
+/// For lambda = u S/d, the log-likelihood is lower than at its maximum by d (log u + 1/u - 1). Twice this
+/// difference is d signed_root(log u)^2.
 Interval profile_interval(const CloggingLength& fit, double confidence) {
   const double allowed = normal_deviate(confidence) / std::sqrt(static_cast<double>(fit.num_clogs));
   const auto length_at = [&](double root, double from, double to) {
@@ -44,7 +45,8 @@ Interval profile_interval(const CloggingLength& fit, double confidence) {
         tools::toms748_solve(excess, from, to, tools::eps_tolerance<double>(), most_steps);
     return fit.length * std::exp((low + high) / 2);
   };
-  // For x < 0, |signed_root(x)| exceeds |x|; for x > 0 it is smaller; at x = 1 + y^2/2 it exceeds y.
+  // These bounds contain the roots: |signed_root(x)| exceeds |x| for x < 0 and is smaller for x > 0; at x = 1
+  // + y^2/2 it exceeds y.
   return {length_at(-allowed, -allowed, 0), length_at(allowed, allowed, 1 + allowed * allowed / 2)};
 }
 
@@ -101,7 +103,7 @@ double least_squares_length(std::span<const Observation> runs) {
   if (!all_finite(runs)) return undefined;
   double longest = 0;
   for (const Observation& run : runs) longest = std::max(longest, run.distance);
-  std::vector<double> clogs;  // lengths below are in units of the longest distance, so nothing overflows
+  std::vector<double> clogs;  // lengths are in units of the longest distance, so nothing overflows
   for (const Observation& run : runs)
     if (run.clogged) clogs.push_back(way(run) / longest);
   if (clogs.size() < 2 || !(longest > 0)) return undefined;
@@ -114,9 +116,8 @@ double least_squares_length(std::span<const Observation> runs) {
     }
     return sum;
   };
-  // Bounds of the fitted length. The upper bound is the length for a single clog among all runs, with a
-  // margin, if P(r) falls to it in a straight line. The lower bound is much smaller than the distance of the
-  // first clog.
+  // Bounds of the fitted length. The upper bound is ten times the length for a single clog, at the longest
+  // distance. The lower bound is much smaller than the distance of the first clog.
   const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
   const double high = std::log(10 * static_cast<double>(runs.size()));

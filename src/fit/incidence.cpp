@@ -15,17 +15,17 @@ struct Ends {
   double all, own;  ///< number of ends by any cause, and by the given cause
 };
 
-/// Sums over all distances so far, for the variance of F_c. For all causes, let g = d/(n (n - d)), and let h
-/// = P d_c/n^2. The variance is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, with F_s the
-/// value of F_c at the term's distance and F the present value.
+/// Sums over all distances so far, for the variance of F_c. Let g = d/(n (n - d)) for all causes together,
+/// and let h = P d_c/n^2. The variance is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, where
+/// F_s is the value of F_c at the distance of the term, and F the present value.
 struct VarianceSums {
   double g = 0, F_g = 0, F2_g = 0;
   double own = 0;
   double h = 0, F_h = 0;
 
-  /// @param before  P before these ends @param F  after them
+  /// @param before  P before these ends @param F  value of F_c after these ends
   void add(double before, double F, const Ends& ends) {
-    // If all runs at risk end here, F no longer grows, and (F - F_s)^2 g stays zero.
+    // If all runs at risk end here, F no longer grows, so the term (F - F_s)^2 g is zero.
     if (ends.all < ends.at_risk) {
       const double g_s = ends.all / (ends.at_risk * (ends.at_risk - ends.all));
       g += g_s, F_g += F * g_s, F2_g += F * F * g_s;

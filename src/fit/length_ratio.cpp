@@ -25,7 +25,7 @@ Interval unpaired_interval(double ratio, const CloggingLength& here, const Clogg
   return {ratio / quantile(complement(f, tail)), ratio / quantile(f, tail)};
 }
 
-/// Sums over pairs. The sums without one pair follow from them.
+/// Sums over pairs, from which the sums without one of the pairs are computed.
 struct Sums {
   double way_here = 0, way_there = 0;
   double clogs_here = 0, clogs_there = 0;
@@ -40,7 +40,7 @@ struct Sums {
   double log_there() const { return std::log(way_there / clogs_there); }
 };
 
-/// Variances and covariance of the estimates of the jackknife, as mean square errors.
+/// Mean square errors (variances and covariance) from the jackknife estimates.
 struct Scatter {
   double here = 0, there = 0, both = 0;
 

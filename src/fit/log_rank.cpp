@@ -29,7 +29,7 @@ double log_rank_p_value(std::span<const Observation> here, std::span<const Obser
   const std::vector<SidedRun> all = sorted_runs(here, there);
   auto at_risk_here = static_cast<double>(std::ranges::count(all, true, &SidedRun::is_here));
   auto at_risk = static_cast<double>(all.size());
-  double excess = 0, variance = 0;  // of the clogs here; summed over all distances with clogs
+  double excess = 0, variance = 0;  // of the number of clogs here; sums over all distances with clogs
   for (auto begin = all.begin(), end = begin; begin != all.end(); begin = end) {
     double clogs = 0, clogs_here = 0, runs = 0, runs_here = 0;
     for (; end != all.end() && end->run.distance == begin->run.distance; ++end) {

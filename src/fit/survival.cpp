@@ -23,7 +23,7 @@ constexpr double shortest_share = 1e-3;
 /// there is no root.
 template <class Function>
 std::optional<std::pair<double, double>> bracket(const Function& falling) {
-  constexpr int most_doublings = 200;  // 2^200 exceeds any ratio of two different doubles' logarithms
+  constexpr int most_doublings = 200;  // 2^200 exceeds the ratio of the logarithms of any two doubles
   double high = 1;
   for (int i = 0; falling(high) > 0; ++i, high *= 2)
     if (i == most_doublings) return std::nullopt;
@@ -33,7 +33,7 @@ std::optional<std::pair<double, double>> bracket(const Function& falling) {
   return std::pair(low, high);
 }
 
-/// Sums over runs; x = r/(longest r), so that no power overflows, and k is the shape.
+/// Sums over runs. Here k is the shape and x = r/(longest r), so that no power overflows.
 struct PowerSums {
   double power = 0;      ///< sum of x^k
   double power_log = 0;  ///< sum of x^k log x
@@ -48,15 +48,15 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
   return sums;
 }
 
-/// Distances of all runs for the test, x = r/(longest r). They are raised to at least a fraction of their
-/// mean.
+/// Distances of all runs for the test, x = r/(longest r). Short distances are raised to shortest_share times
+/// the mean distance.
 struct LogWays {
   double longest = 0;         ///< longest distance [sigma]
   std::vector<double> log_x;  ///< log x of every run
   double total = 0;           ///< sum of all x
   double clog_logs = 0;       ///< sum of log x over clogs
 };
-/// No log_x if no run has moved, or a distance is not finite.
+/// `log_x` is empty if no run has moved, or if a distance is not finite.
 LogWays log_ways(std::span<const Observation> runs) {
   LogWays ways;
   for (const Observation& run : runs) ways.longest = std::max(ways.longest, run.distance);
@@ -130,8 +130,8 @@ WeibullTest test_exponentiality(std::span<const Observation> runs) {
     test.p_value = 0;
     return test;
   }
-  // The derivative of the profile likelihood with respect to the shape. It falls from +infinity to a negative
-  // number.
+  // The derivative of the profile likelihood with respect to the shape. With increasing shape, it falls from
+  // +infinity to a negative number.
   const auto score = [&](double shape) {
     const PowerSums sums = power_sums(ways.log_x, shape);
     return 1 / shape + ways.clog_logs / d - sums.power_log / sums.power;

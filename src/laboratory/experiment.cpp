@@ -15,9 +15,9 @@
 namespace clog::laboratory {
 namespace {
 
-// Tables are made on first use: before main() a failed allocation could not be reported.
+// Tables are made on first use, because a failed allocation before main() could not be reported.
 
-/// The units of a quantity, with their values in SI units.
+/// The units of a quantity, and the value of each unit in SI units.
 const std::map<std::string, double>& known_units(const std::string& quantity) {
   static const std::map<std::string, std::map<std::string, double>> units = {
       {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},
@@ -30,8 +30,8 @@ const std::map<std::string, double>& known_units(const std::string& quantity) {
   return units.at(quantity);
 }
 
-/// The unit with u for the micro sign, for which there are two code points, and with ^2 and ^3 for other
-/// forms of powers, as in mm2 and mm².
+/// A common spelling of a unit: u instead of the micro sign (which has two code points), and ^2 and ^3
+/// instead of other forms of powers, as in mm2 and mm².
 std::string plain_unit(std::string unit) {
   const std::pair<const char*, const char*> forms[] = {{"µ", "u"}, {"μ", "u"}, {"²", "^2"}, {"³", "^3"}};
   for (const auto& [form, plain] : forms)

@@ -101,7 +101,7 @@ bool scales_speed(const Entries& entries) {
 
 constexpr double right_angle = std::numbers::pi / 2 * (1 + 1e-12);
 
-/// Scales the terminal speed to this droplet and this tilt.
+/// Scales the measured speed to the droplet and the tilt of this laboratory.
 void scale_speed(Laboratory& lab, const Entries& entries) {
   Experiment& at = lab.experiment;
   if (at.terminal_speed == 0) throw Error("has no speed, which speed-diameter, -angle and -exponent scale");
@@ -160,7 +160,7 @@ std::vector<std::string> values_of(const Entries& entries, const std::string& ke
   return {values.begin(), values.end()};
 }
 
-/// The entries of each droplet at each tilt.
+/// One set of entries for each droplet at each tilt.
 std::vector<Entries> sets_of(const Entries& entries) {
   for (const auto& [key, example] : {std::pair{"diameter", "3.5 mm"}, {"angle", "28 deg"}})
     if (!entries.contains(key))

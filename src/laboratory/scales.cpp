@@ -25,7 +25,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// A drop on a wall that it does not wet.
+/// A droplet on a wall that it does not wet.
 struct Puddle {
   double height = 0, area = 0, moment = 0;  ///< `moment` is that of the depth below the apex
 };
@@ -35,7 +35,8 @@ struct Puddle {
 /// phi the angle of the slope, from 0 at the apex to pi at the wall.
 Puddle puddle(double line_tension, double apex_curvature) {
   using State = Eigen::Array<double, 5, 1>;  // phi, x, z, area, moment
-  // The interface bends over a length of sqrt(Gamma) at a puddle's rim, and over a radius of 1/2 elsewhere.
+  // At the rim of a puddle, the interface bends over a length of sqrt(Gamma). A small droplet has a radius of
+  // curvature of 1/2.
   const double step = 0.02 * std::min(0.5, std::sqrt(line_tension));
   const auto slope = [&](const State& y) {
     const double deepening = std::sin(y[0]);
@@ -111,7 +112,7 @@ Scales scales_of(const Laboratory& lab) {
 
 namespace {
 
-/// The value with four digits, because a measurement has no more. Empty if unknown.
+/// The value with four digits, because a measurement is not more precise. Empty if the value is unknown.
 std::string rounded_text(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : ""; }
 
 }  // namespace
@@ -132,8 +133,7 @@ Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, cons
 
 namespace {
 
-/// The text with each number that has a unit replaced. @param convert  makes a number of a number and its
-/// unit
+/// Replaces each number that has a unit. @param convert  returns the replacement for a number and its unit
 template <class Convert>
 std::string without_units(const std::string& text, const Convert& convert) {
   static const std::regex number_with_unit(
@@ -153,7 +153,7 @@ std::string without_units(const std::string& text, const Convert& convert) {
 /// @param unit  a name of a unit, or sigma. @param size  the model's unit of the quantity [SI]
 std::string in_model_unit(const std::string& number, const std::string& unit, const std::string& quantity,
                           double size) {
-  constexpr int digits = 13;  // the number of digits of circles in a file
+  constexpr int digits = 13;  // circles in a file have as many digits
   if (unit == "sigma" || unit == "/sigma^2") return number;
   return fmt::format("{:.{}g}", to_si(number + unit, quantity) / size, digits);
 }

@@ -64,18 +64,19 @@ the rows' angle: 1 for droplets that follow the rows (bump mode), 0 for droplets
 lambda by least squares (as published, biased), Weibull's shape with its p-value, and capillary numbers; json also
 contains the survival P(r).
 
-In rows with the same array, runs of the same seed met the same obstacles, so the errors of these rows are correlated,
-and overlapping intervals do not mean that the lengths agree. Use clogfit compare, which pairs runs by seed.
+If several lines of the table have the same arrays, their runs of equal seed met the same obstacles. So the errors of
+these lines are correlated, and overlapping intervals do not mean that the lengths agree. Use clogfit compare, which
+pairs runs by seed.
 
 An experiment calls a droplet clogged if it has not moved for a waiting time. --dwell T applies this rule: a droplet
 that advanced by at most dwell-length (0.05 sigma by default) for longer than T counts as clogged at the place of its
 first such rest, even if it moved on later.
 )";
 
-/// Runs python3 -m clogsweep COMMAND, which calls these programs for numbers.
+/// Runs python3 -m clogsweep COMMAND, which calls the C++ programs to compute numbers.
 int in_python(int argc, const char* const* argv) {
   const std::string command = argv[1];
-  // The user's own --programs comes later and overrides this.
+  // The user's own --programs comes later and overrides this value.
   std::vector<std::string> arguments = {command, "--programs", cli::own_folder()};
   arguments.insert(arguments.end(), argv + 2, argv + argc);
   cli::become_python("clogfit " + command, cli::find_python_module(), arguments);
@@ -95,8 +96,8 @@ void set_row_angle(const std::string& text, std::vector<results::Group>& groups)
   for (results::Group& group : groups) group.row_angle = angle;
 }
 
-/// @throws Error if there are neither devices nor families, or if a line is behind the exit of a device,
-/// because droplets are not followed there
+/// @throws Error if there are neither devices nor families, or if a line is downstream of a device's exit,
+/// where droplets are no longer followed
 void require_place_for_lines(const std::string& text, const results::LinesOf& lines,
                              const std::vector<results::Group>& groups) {
   bool is_any = false;
@@ -117,7 +118,7 @@ void require_place_for_lines(const std::string& text, const results::LinesOf& li
         "no place for --lines (no run has release=entrance, an exit or break-up=daughters); leave it out");
 }
 
-/// The lines of --lines. Lines in mm are at other places for droplets of other sizes.
+/// The lines of --lines. In droplet diameters, the place of a line in mm depends on the size of the droplet.
 results::LinesOf lines_of(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows) {
   if (!line.has("lines")) return {};
   return [&line, scales = scales_of_rows(line, rows)](const sweep::RunRow& row) {

@@ -77,7 +77,8 @@ results::Comparisons compare_sweeps(const cli::CommandLine& line, const std::vec
   return found;
 }
 
-/// Says which columns of a measured table choose no groups of another table.
+/// Prints which columns of a measured table are not used, because the other table has no corresponding
+/// column.
 void say_unmatched_columns(const results::DistanceTable& table, const results::DistanceTable& other) {
   if (!table.is_measured) return;
   const std::vector<std::string> columns = results::unmatched_labels(table, other);
@@ -87,7 +88,7 @@ void say_unmatched_columns(const results::DistanceTable& table, const results::D
         table.source, other.source, joined(columns)));
 }
 
-/// Says which groups no comparison contains.
+/// Prints which groups are in no comparison.
 void say_left_out(const results::Comparisons& comparisons) {
   for (const results::LeftOut& groups : comparisons.left_out)
     console::say(fmt::format("clogfit compare: {}: left out, {} of {} groups match no runs of {}, such as {}",

@@ -119,11 +119,11 @@ std::string why_no_tilt(const Laboratory& lab) {
                      console::plain(laboratory::line_tension_upright(lab)));
 }
 
-/// Converts an option, which is a number of the model, to a quantity of the laboratory.
+/// Converts the number of an option, in the model's units, to a quantity of the laboratory.
 struct Conversion {
   const char *option, *symbol;
   const char *name, *what, *unit;
-  std::function<double(double)> convert;  ///< NaN where the laboratory has no such quantity
+  std::function<double(double)> convert;  ///< returns NaN if the laboratory has no such quantity
   std::string otherwise = "-";            ///< shown instead of NaN
 };
 std::vector<Conversion> conversions(const Laboratory& lab, const Scales& scales) {
@@ -156,7 +156,8 @@ std::string advice_of(const Scales& scales) {
       console::plain(scales.wall_stiffness), console::plain(nearly_rigid_tension));
 }
 
-/// Rounds all numbers to twelve digits, because they are results of conversions: 30, not 29.999999999999996.
+/// Rounds all numbers to twelve digits, which removes the round-off of conversions: 30, not
+/// 29.999999999999996.
 Json rounded(Json document) {
   for (Json& value : document)
     if (value.is_structured())

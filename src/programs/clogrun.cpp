@@ -82,7 +82,7 @@ bool parse_options(cli::CommandLine& line, int argc, char** argv) {
   return true;
 }
 
-/// Files that an option writes. A film without a suffix may become either of two files; both are listed.
+/// Files that an option may write. For a film without a suffix, there are two possible files.
 std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const std::string& option) {
   if (!line.has(option)) return {};
   const std::filesystem::path name = line.get(option);
@@ -90,8 +90,8 @@ std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const 
   return {name.string() + ".mp4", name.string() + ".gif"};
 }
 
-/// Refuses options that name the same file. The files are written one after the other, so a user would notice
-/// two equal names only after the run.
+/// Refuses options that name the same file. One file would replace the other, and the user would notice this
+/// only after the run.
 void refuse_same_files(const cli::CommandLine& line) {
   std::map<std::filesystem::path, std::string> options;
   for (const std::string option : {"output", "write-obstacles", "frames"})
@@ -104,7 +104,7 @@ void refuse_same_files(const cli::CommandLine& line) {
     }
 }
 
-/// Name of a film for the Python module. @throws Error if it cannot be written
+/// Name of the film, for the Python module. @throws Error if the film cannot be written
 std::filesystem::path film_name(const cli::CommandLine& line) {
   std::filesystem::path name = line.get("frames");
   if (!line.has("polygon-interval"))
@@ -123,7 +123,7 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
   return name;
 }
 
-/// The Python module's options for drawing the film. @throws Error if it cannot be written
+/// Options with which the Python module draws the film. @throws Error if the film cannot be written
 std::vector<std::string> film_options(const cli::CommandLine& line) {
   std::vector<std::string> options = {"droplet", line.get("output"), "--output=" + film_name(line).string(),
                                       "--film"};
@@ -133,7 +133,7 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
   return options;
 }
 
-/// Systems with runs that can be written to a file and filmed.
+/// The systems in which a run can be written to a file and filmed.
 const std::map<std::string, int (*)(cli::CommandLine&)>& followed_systems() {
   static const std::map<std::string, int (*)(cli::CommandLine&)> systems = {
       {"array", clogrun_array}, {"channel", clogrun_channel}, {"replay", clogrun_replay}};

@@ -28,9 +28,9 @@ void refuse_unwritable_files(const cli::CommandLine& line) {
   if (line.has("write-obstacles")) store::refuse_unwritable(line.get("write-obstacles"));
 }
 
-/// Follows a run and writes its trajectory. All errors of the user have been found before.
-/// @param config  printed by --dry-run
-/// @param origin  of the trajectory
+/// Follows a run and writes its trajectory. The caller has already checked the command line for errors.
+/// @param config  config that --dry-run prints
+/// @param origin  origin of the trajectory
 /// @param begin  called before the first step; not called if there is nothing to run
 int follow_run(const cli::CommandLine& line, DropletRun run, const std::string& config,
                store::Provenance origin, const std::function<void(const DropletRun&)>& begin) {
@@ -53,7 +53,7 @@ int follow_run(const cli::CommandLine& line, const RunParameters& parameters, co
   return follow_run(line, DropletRun(parameters), config, cli::origin(line), begin);
 }
 
-/// Follows one daughter of the row's family from its birth, in its own units.
+/// Follows one daughter of the row's family from its birth, in the units of the daughter.
 int follow_droplet(const cli::CommandLine& line, const sweep::RunRow& row) {
   refuse_options(line, "replay of a daughter", {"lab", "write-obstacles"});
   const Member& member = results::member_of(row, line.get("droplet"));

@@ -59,7 +59,7 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 The same command resumes a stopped or killed sweep.
 )";
 
-/// @param growing  set if the sweep adds runs automatically
+/// @param growing  nullopt unless the sweep adds runs automatically
 store::Provenance provenance(const cli::CommandLine& line,
                              const std::optional<results::GrowingSweep>& growing, int num_ranks) {
   store::Provenance all = cli::origin(line);
@@ -74,7 +74,7 @@ store::Provenance provenance(const cli::CommandLine& line,
   return all;
 }
 
-/// @throws Refusal; if the format is JSON, also prints it as JSON
+/// @throws Refusal; with the format JSON, first prints the refusal as JSON
 sweep::Plan planned(const sweep::Settings& settings, results::PreviewFormat format) try {
   return sweep::Plan(settings);
 } catch (const Refusal& refusal) {
@@ -100,7 +100,7 @@ std::variant<int, sweep::Plan> prepare(const cli::CommandLine& line, scheduler::
     results::print_tasks(plan, format);
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
-    // The process that was forked before MPI started runs these jobs.
+    // These jobs run in the process that was forked before MPI started.
     const sweep::JobFactory jobs =
         isolated.jobs(assignment(line, line.settings()).text(), sweep::run_jobs(plan));
     return results::print_cost(plan, driver_options(line).output, growing ? &growing->rule : nullptr, jobs,
@@ -134,7 +134,8 @@ constexpr int sweep_starts = -1;
 
 int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::IsolatedJobs& isolated, int argc,
                        char** argv) {
-  // Rank 0 reads and checks; the others wait for its exit code, or its assignment.
+  // Rank 0 reads and checks the command line; the other ranks wait for an exit code or an assignment from
+  // rank 0.
   cli::CommandLine line("clogsweep", clogsweep_usage, cli::CommandLine::SweepKeys::accepted);
   std::optional<MasterState> master;
   std::string task;  // the text of an assignment, see scheduler::Assignment::text()
@@ -166,7 +167,8 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   return console::exit_success;
 }
 
-/// The file that a sweep may resume. It is read before the command line is checked; empty if none is given.
+/// The output that the user named, which the sweep may resume; empty if no output is given. This function
+/// searches the command line before it is checked.
 std::string named_output(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];

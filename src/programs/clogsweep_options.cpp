@@ -71,12 +71,12 @@ double precision(const cli::CommandLine& line) {
               " (must lie between 0.1% and 100%) try 20%");
 }
 
-/// Whether every point has a text for this key, so that its text on the command line has no effect.
+/// Whether every point has a text for this key. The key's text on the command line then has no effect.
 bool is_full(const sweep::Points& points, std::size_t place) {
   return std::ranges::none_of(points.rows, [&](const auto& row) { return row[place].empty(); });
 }
 
-/// Adds the plan of --lab, --points and --shard to the settings.
+/// Adds the laboratory, points and shard of --lab, --points and --shard to the settings.
 void add_plan_options(cli::CommandLine& line) {
   sweep::Settings& settings = line.settings();
   sweep::Points points = settings.points();
@@ -115,8 +115,8 @@ void refuse_other_format(const cli::CommandLine& line) {
                       name, name.substr(0, name.size() - std::string(ending).size())));
 }
 
-/// Implements --seeds-per-set: keeps the seeds of the keys and of the output's rows, and adds the smallest
-/// unused seeds. So a killed sweep gets the same seeds again.
+/// Implements --seeds-per-set: keeps the seeds that the keys give and those of the rows in the output, and
+/// adds the smallest unused seeds. So a killed sweep gets the same seeds again.
 void fill_seeds(cli::CommandLine& line) {
   if (!line.has("seeds-per-set")) return;
   for (const char* other : {"until-precision", "shard"})

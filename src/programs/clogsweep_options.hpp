@@ -15,7 +15,7 @@ namespace clog::programs {
 /// as the functions below do
 bool parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv);
 
-/// The options of the driver, checked except for the output's name.
+/// The options of the driver. All are checked except the name of the output.
 scheduler::DriverOptions driver_options(const cli::CommandLine& line);
 scheduler::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings);
 /// The value of --format for --dry-run.

@@ -15,7 +15,7 @@
 namespace clog::programs {
 namespace {
 
-/// The distance of a run that diverged is unknown.
+/// The outcome in words. Excludes the distance of a run that diverged, because it is unknown.
 std::string outcome(const sweep::RunRow& row) {
   const std::string status(name(row.status));
   return std::isfinite(row.distance) ? fmt::format("{}, distance {:.17g}", status, row.distance) : status;

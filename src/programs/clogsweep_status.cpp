@@ -48,7 +48,8 @@ bool wait(std::chrono::milliseconds time) {
   return console::stop_signalled();
 }
 
-/// Prints a line for each event until the sweep ends. Reading takes at most a tenth of the time.
+/// Prints a line for each event until the sweep ends. Pauses after each read, so that reading takes at most a
+/// tenth of the time.
 int follow(const std::string& path) {
   constexpr int rest = 10;
   constexpr std::chrono::milliseconds shortest{200};
@@ -110,7 +111,8 @@ int clogsweep_status(int argc, const char* const* argv) {
     throw Error("--follow and --watch exclude each other; give one");
   if (line.has("follow") && format != "json") throw Error("--follow prints lines of JSON; add --format json");
   if (line.has("follow")) return follow(path);
-  // Refuses other kinds of files with a message of one line. The reader reports a missing table.
+  // is_open() refuses a file of another kind with a message of one line. A missing table is reported when the
+  // table is read.
   if (std::filesystem::exists(path)) store::Journal::is_open(store::journal_path(path));
   for (bool is_first = true;; is_first = false) {
     const Status status = results::status_of(

@@ -11,7 +11,7 @@ inline bool parse_file_command(cli::CommandLine& line, int argc, const char* con
   return cli::parse_command(line, argc, argv, {{"HDF5", store::library_version()}});
 }
 
-/// Provenance of a table that a command makes from others.
+/// Provenance of a table that a command makes from other tables.
 inline store::Provenance origin_of_table(const cli::CommandLine& line) {
   store::Provenance all = cli::origin(line);
   all.emplace_back("hdf5_version", store::library_version());

@@ -37,15 +37,15 @@ void say_replaced(const cli::CommandLine& line) {
   console::say(fmt::format("clogfit: {} replaces the laboratory stored with the rows", line.get("lab")));
 }
 
-/// The smallest and the largest of these speeds [mm/s]; only one number if they are equal.
+/// The smallest and the largest of these speeds [mm/s]; only one number if all are equal.
 std::string speeds_text(const std::vector<double>& speeds) {
   const auto [least, most] = std::ranges::minmax(speeds);
   const std::string first = fmt::format("{:.4g}", least), last = fmt::format("{:.4g}", most);
   return first == last ? first : first + " to " + last;
 }
 
-/// Prints one line if runs have another terminal speed than the laboratory's droplet. In this case, speeds
-/// and times in units of the laboratory are those of the runs.
+/// Prints one line if runs have another terminal speed than the laboratory's droplet. Speeds and times in
+/// laboratory units then follow from the terminal speed of the runs.
 void say_other_speed(const std::vector<results::Group>& groups) {
   constexpr double rounding = 1e-3;
   std::vector<double> of_runs, of_droplets;
@@ -84,7 +84,7 @@ results::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
 /// The droplets of a laboratory file, one or several.
 struct Droplets {
   std::vector<laboratory::Laboratory> all;
-  /// Whether there are several sizes, or circles that were drawn for another size.
+  /// Whether the droplets have several sizes, or circles were drawn for a droplet of another size.
   bool have_several_sizes = false;
 
   void note_size(double diameter) {
@@ -98,7 +98,8 @@ std::vector<std::string> items_of(const std::string& list) {
   return {items.begin(), items.end()};
 }
 
-/// The names of these files. A name is followed by the droplet's diameter if its circles are to be scaled.
+/// The names of the files in the list. If the circles of a file must be scaled, the droplet's diameter
+/// follows its name.
 std::string scaled_circles(const std::string& list, const laboratory::Laboratory& lab,
                            const Droplets& droplets) {
   constexpr double milli = 1e-3;
@@ -115,8 +116,8 @@ bool is_plain_number(std::string_view text) {
   return text.find_first_not_of("0123456789.eE+-") == std::string::npos;
 }
 
-/// Whether the array's geometry depends on this key, and some value of the key is a plain number other than
-/// 0.
+/// Whether the geometry of the array depends on this key, and a value of the key is a number without unit
+/// other than 0.
 bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, const std::string& text) {
   RunParameters run;
   run.obstacles.layout = layout;
@@ -131,8 +132,9 @@ bool is_length_without_unit(const Parameter& parameter, ObstacleLayout layout, c
          });
 }
 
-/// An array with lengths in millimetres is the same for all droplets. Numbers without a unit would be in
-/// droplet diameters, so the array would grow with the droplets. If users want this, they must write sigma.
+/// Refuses lengths of the array without a unit. Such numbers are in droplet diameters, so the array would
+/// grow with the droplet, whereas lengths in millimetres give the same array for all droplets. Users who want
+/// a growing array must write the unit sigma.
 /// @param texts  the texts that the user gave
 /// @throws Error
 void refuse_lengths_without_unit(const cli::CommandLine& line, const laboratory::Texts& texts) {
@@ -183,7 +185,7 @@ laboratory::Texts converted(const laboratory::Texts& given, const laboratory::La
   return texts;
 }
 
-/// Texts of the keys that no point sets. @param model  empty if points set it
+/// Texts of the keys that no point sets. @param model  the model; empty if points set the model
 laboratory::Texts texts_of(const laboratory::Laboratory& lab, const Droplets& droplets,
                            const laboratory::Texts& given, const sweep::Settings& settings,
                            const std::string& model) {
@@ -206,7 +208,7 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
                         const laboratory::Texts& given, sweep::Points points) {
   if (points.rows.empty()) points.rows.emplace_back();
   std::vector<laboratory::Texts> sets;
-  std::vector<int> lines;  // of the points of the sets
+  std::vector<int> lines;  // lines of the points to which the sets belong
   std::set<std::string> keys;
   for (const laboratory::Laboratory& lab : droplets.all) {
     const laboratory::Scales scales = laboratory::scales_of(lab);

@@ -10,12 +10,13 @@
 namespace clog::programs {
 
 /// If --lab is given, sets the keys that its file determines, converts the values that were given with units,
-/// and scales user-supplied circles to the droplet. @throws Error, also if the file has several droplets
+/// and scales user-supplied circles to the droplet. @throws Error, for instance if the file has several
+/// droplets
 void use_laboratory(cli::CommandLine& line);
 
 /// use_laboratory() for a file of one or several droplets. Several droplets become points, each with the
 /// texts of one droplet.
-/// @param points  the sweep's points, none or some; each is combined with each droplet
+/// @param points  the sweep's points, if any; the function combines each point with each droplet
 void use_laboratories(cli::CommandLine& line, sweep::Points& points);
 
 /// Gives each group the scale of the laboratory of --lab or, without --lab, of the group's own laboratory.
@@ -28,7 +29,7 @@ results::ScalesByLaboratory scales_of_rows(const cli::CommandLine& line,
                                            const std::vector<sweep::RunRow>& rows);
 
 /// The droplet's diameter in mm, from the laboratory of --lab or, without --lab, from the common laboratory
-/// of all rows; nullopt if there is neither. @throws Error
+/// of all rows; nullopt without --lab and without a common laboratory. @throws Error
 std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
 }  // namespace clog::programs

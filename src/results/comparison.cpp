@@ -64,8 +64,8 @@ std::set<Value> values_in(const std::vector<ParameterSet>& sets, const std::stri
   return values;
 }
 
-/// Columns that match the parameter sets of two sides: they vary within a side, and at least one value occurs
-/// on both sides.
+/// Columns by which parameter sets of two sides are matched. The values in such a column vary within a side,
+/// and at least one value occurs on both sides.
 std::vector<std::string> common_columns(const Side& there, const Side& here,
                                         const std::vector<ParameterSet>& sets_there,
                                         const std::vector<ParameterSet>& sets_here) {
@@ -102,7 +102,7 @@ ByValues by_values(const std::vector<ParameterSet>& sets, const std::vector<std:
   return all;
 }
 
-/// Appends the unmatched sets of a side: no set of the other side has their values in Comparisons::columns.
+/// Appends the parameter sets of a side whose values in Comparisons::columns no set of the other side has.
 void append_unmatched(Comparisons& comparisons, const Side& side, const Side& compared_with,
                       const ByValues& own, const ByValues& others) {
   std::vector<std::vector<Value>> unmatched;
@@ -151,7 +151,7 @@ Comparison compare_sets(const ParameterSet& here, const ParameterSet& there, dou
   return comparison;
 }
 
-/// The numbers that distinguish the droplets of a cell: diameter [mm] and tilt [degrees].
+/// The numbers that distinguish droplets in the cell of a laboratory: diameter [mm] and tilt [degrees].
 std::pair<double, double> droplet_of(const LaboratoryScale& scale) { return {scale.length, scale.tilt}; }
 
 /// Columns in which all compared sets differ, except automatic values.

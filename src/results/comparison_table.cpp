@@ -27,7 +27,7 @@ std::string bounded_length(const fit::CloggingLength& length, double factor) {
                                : console::with_interval(factor * length.length, lower, upper).value;
 }
 
-/// @param clogs_head, length_head  of the printed columns
+/// @param clogs_head, length_head  heads of the printed columns
 void append_length(const std::string& side, const fit::CloggingLength& length, const Comparisons& all,
                    const Flaws& flaws, const char* clogs_head, const std::string& length_head,
                    std::vector<Field>& fields) {
@@ -106,7 +106,8 @@ std::string note_of(const Comparison& one) {
   return text(one.flaws_here) + '/' + text(one.flaws_there);
 }
 
-/// All doubts, and the number of failed runs. A reference that occurs in several comparisons counts once.
+/// All doubts, and the number of failed runs. A reference group that occurs in several comparisons counts
+/// only once.
 Flaws all_flaws(const Comparisons& comparisons) {
   Flaws all;
   std::map<std::vector<Value>, int> failed;

@@ -37,7 +37,7 @@ class ResidualTime {
     slowing_ = fit::fit_clogging_length(logarithms, default_confidence);
   }
 
-  /// Mean remaining time of a run that ends after `longest` at the latest, because of max-time.
+  /// Mean remaining time of a run that lasts at most `longest`, because of max-time.
   double seconds_left(const RunCost& run, double longest, Case which) const {
     const double most = longest - run.seconds;
     const bool may_never_end = !sets_with_ends_.contains(run.parameter_set);
@@ -49,7 +49,7 @@ class ResidualTime {
       case Case::middle:
         break;
     }
-    // Without information, every order of magnitude of the remaining time is equally likely.
+    // Without any end, every order of magnitude of the remaining time is assumed to be equally likely.
     if (may_never_end) return most / std::log(longest / run.seconds);
     return std::sqrt(if_even(mean(even_), most) * if_slowing(mean(slowing_), run.seconds, longest));
   }
@@ -59,15 +59,16 @@ class ResidualTime {
   fit::CloggingLength even_;     // fit to the times: every run is equally likely to end next
   fit::CloggingLength slowing_;  // fit to their logarithms: the remaining time grows with the time so far
 
-  /// Adds half an end to the number of ends, so that the mean is finite even without any end.
+  /// Mean of a fitted law. Half an end is added to the number of ends, so that the mean is finite even
+  /// without any end.
   static double mean(const fit::CloggingLength& fit) { return fit.total_distance / (fit.num_clogs + 0.5); }
 
   /// Mean remaining time for exponential ends, P = exp(-t/mean).
   static double if_even(double mean, double most) {
     return std::isinf(mean) ? most : mean * -std::expm1(-most / mean);
   }
-  /// Mean remaining time for ends with the power law P = (t/seconds)^(-1/mean), which is an equal mixture of
-  /// all exponentials.
+  /// Mean remaining time for ends with the power law P = (t/seconds)^(-1/mean), which is a mixture of
+  /// exponentials.
   static double if_slowing(double mean, double seconds, double longest) {
     const double power = 1 - 1 / mean;
     const double logarithm = std::log(longest / seconds);
@@ -133,7 +134,7 @@ struct Pace {
   }
 };
 
-/// Expected seconds for each ResidualTime::Case, with the standard error of the middle one.
+/// Expected seconds for each ResidualTime::Case, and the standard error of the middle case.
 struct Expectation {
   double lowest = 0;
   double middle = 0;
@@ -148,7 +149,8 @@ SweepCost cost_with_interval(const Pace& pace, double bound, const Expectation& 
   if (seconds.middle == 0) return cost;
   const double sampling = 1.96 * seconds.relative_error();
   const auto factor = [&](double ratio) { return std::exp(std::hypot(std::log(ratio), sampling)); };
-  // A run of the sample may have taken longer than the mean pace allows.
+  // The estimate is limited, because a run of the sample may have taken longer than its bound at the mean
+  // pace.
   cost.expected = std::min(bound, seconds.middle);
   cost.lower = cost.expected / factor(seconds.middle / seconds.lowest);
   cost.upper = std::min(bound, cost.expected * factor(seconds.highest / seconds.middle));
@@ -175,7 +177,8 @@ class Shares {
             std::pow(middle * relative_error, 2)};
   }
   double error_of_all(std::int64_t population) const { return middle_.relative_error(population); }
-  /// The whole error comes from the runs outside the sample, because the cost of the runs inside is known.
+  /// Only runs outside the sample contribute to the error, because the cost of the runs in the sample is
+  /// known.
   double error_of_others(std::int64_t number) const {
     const std::int64_t all = num_runs_ + number;
     return middle_.relative_error(all) * static_cast<double>(all) / static_cast<double>(number);
@@ -211,7 +214,7 @@ SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns>
   double bound = 0;
   Expectation seconds;
   std::map<std::int64_t, Shares> sets;
-  std::map<std::int64_t, Pace> paces;  // with one pace for all sets, a slow set would exceed the bound
+  std::map<std::int64_t, Pace> paces;  // with a common pace, a slow set would exceed its bound
   for (const auto& [set, runs] : runs_of) {
     const Pace& pace = paces.emplace(set, Pace(runs)).first->second;
     const bool has_end =

@@ -30,7 +30,7 @@ struct Head {
   int distance = -1, clogged = -1;
   double factor = 1;  ///< factor from the column's unit to the table's unit
   std::size_t num_columns = 0;
-  /// A column with values that separate groups.
+  /// A column whose values separate groups.
   struct Label {
     std::size_t column;
     std::optional<double> factor;  ///< from the unit of a laboratory's column to mm or degrees
@@ -67,8 +67,8 @@ void refuse_entry(const std::string& cell, const std::string& name, const std::s
         console::printable(cell)));
 }
 
-/// A cell of the first line, written like the name of a column of results.
-/// @param around_unit  what may begin the unit
+/// A cell of the first line, in the form of the name of a column of results.
+/// @param around_unit  characters that may precede the unit
 std::string result_name(const std::string& cell, const char* around_unit) {
   const std::string without_unit = console::trimmed(cell.substr(0, cell.find_first_of(around_unit)));
   std::string name = label_key(console::in_lower_case(without_unit));
@@ -76,7 +76,8 @@ std::string result_name(const std::string& cell, const char* around_unit) {
   return name;
 }
 
-/// @throws Error if the column has the name of a result. The printed table would contain this name twice.
+/// @throws Error if the column has the name of a result. Otherwise the printed table would contain this name
+/// twice.
 /// @param taken  names of results
 void refuse_result(const std::string& cell, const std::vector<std::string>& taken) {
   const std::string name = result_name(cell, "[(/");
@@ -89,8 +90,8 @@ void refuse_result(const std::string& cell, const std::vector<std::string>& take
     throw Error(fmt::format("column '{}' has the name of a result; rename it", console::printable(cell)));
 }
 
-/// @throws Error if the column would separate droplets by their outcomes. The lengths would then have no
-/// meaning.
+/// @throws Error if the column separates droplets by their outcomes, because the lengths of such groups have
+/// no meaning
 void refuse_outcome(const std::string& cell) {
   const std::string name = result_name(cell, "[(");
   static const std::set<std::string> words = {"censored", "event", "outcome"};
@@ -103,8 +104,8 @@ void refuse_outcome(const std::string& cell) {
         console::printable(cell)));
 }
 
-/// For a column that belongs to the laboratory: the factor to its unit, mm or degrees. nullopt for any other
-/// column. @throws Error if the unit of the column is not known
+/// The factor from the unit of a laboratory's column to mm or degrees; nullopt for any other column. @throws
+/// Error if the unit of the column is not known
 std::optional<double> laboratory_factor(const std::string& cell, const std::string& name,
                                         const std::string& unit) {
   if (name != "diameter" && name != "angle") return {};
@@ -121,7 +122,8 @@ std::optional<double> laboratory_factor(const std::string& cell, const std::stri
   return factor;
 }
 
-/// @throws Error if a comment gives units, as in files of circles, because this table has separate units
+/// @throws Error if a comment gives units, as in files of circles, because in a table of distances each
+/// column gives its unit
 void refuse_units(const std::string& comment) {
   const console::UnitsComment stated = console::units_in(comment);
   if (stated.unit || stated.droplet)
@@ -144,7 +146,7 @@ Head head_of(std::vector<std::string> cells, DistanceTable& table, const std::ve
       take_distance(head, i, unit, table);
     } else if (console::in_lower_case(cells[i]) == "clogged") {
       set_once(head.clogged, i, "clogged");
-    } else if (!cells[i].empty()) {  // pandas writes its index without a name
+    } else if (!cells[i].empty()) {  // pandas writes an index column without a name
       others.push_back(i);
     }
   }
@@ -204,7 +206,7 @@ class Cells {
       throw Error(fmt::format("distance is '{}'; write a number of 0 or more", excerpt(cell)));
     return *distance;
   }
-  /// The diameter [mm] or the angle [degrees]; unset for an empty cell. @param name  of the column
+  /// The diameter [mm] or the angle [degrees]; unset for an empty cell. @param name  name of the column
   Value of_laboratory(const std::string& cell, char separator, double factor, const std::string& name) {
     if (cell.empty()) return {};
     const std::optional<double> value = number(cell, separator, name);
@@ -213,7 +215,7 @@ class Cells {
                               console::printable(excerpt(cell)), name == "diameter" ? " above 0" : ""));
     return factor == 1 ? *value : twelve_digits(factor * *value);
   }
-  /// The number or the words of a label. @param name  of the column
+  /// The number or the words of a label. @param name  name of the column
   Value label(const std::string& cell, const std::string& name) {
     const std::optional<double> number = number_of(with_any_comma_as_point(cell));
     if (!number) return cell.empty() ? Value() : Value(console::printable(cell));
@@ -239,7 +241,8 @@ class Cells {
   }
 };
 
-/// Names columns that make each droplet a separate group, such as a column that numbers the droplets.
+/// Prints the names of columns that make each droplet a separate group, such as a column that numbers the
+/// droplets.
 void hint_at_lone_droplets(const DistanceTable& table) {
   constexpr std::size_t fewest_groups = 3;
   if (table.groups.size() < fewest_groups) return;
@@ -263,13 +266,13 @@ bool is_quantity(const std::string& label) {
                              [&](const sweep::Key& key) { return label_key(key.name) == label_key(label); });
 }
 
-/// Names columns in which every value has only clogged, or only moving droplets. A column that may number the
-/// droplets is not named: at least half of them have a unique value there. Quantities that were set before
-/// the run are not named, either.
+/// Prints the names of columns in which every value has only clogged droplets, or only moving droplets.
+/// Excludes columns that may number the droplets, in which at least half of the droplets have a unique value.
+/// Also excludes quantities that were set before the run.
 void hint_at_outcomes(const DistanceTable& table) {
   for (std::size_t i = 0; i < table.labels.size(); ++i) {
     if (is_quantity(table.labels[i])) continue;
-    std::map<Value, std::pair<int, int>> counts;  // of moving and clogged droplets
+    std::map<Value, std::pair<int, int>> counts;  // numbers of moving and of clogged droplets
     for (const DistanceGroup& group : table.groups)
       for (const fit::Observation& run : group.runs)
         ++(run.clogged ? counts[group.labels[i]].second : counts[group.labels[i]].first);

@@ -41,15 +41,15 @@ std::vector<Lengths> lengths_of(const DistanceTable& table, double confidence) {
   return all;
 }
 
-/// A unit of lengths: the suffix of names, and for each group the factor from the table's unit. The factor is
-/// NaN if the droplet's diameter is unknown.
+/// A unit of lengths. It has a suffix for names and, for each group, a factor from the table's unit. The
+/// factor is NaN if the droplet's diameter is unknown.
 struct Unit {
   const char *suffix, *text;
   std::vector<double> factors;
 };
 
-/// The units of the results. The table's own unit comes first. The other unit requires a known diameter in
-/// some group.
+/// The units of the results. The table's own unit comes first. The other unit is included if the diameter is
+/// known in at least one group.
 std::vector<Unit> units_of(const DistanceTable& table, std::optional<double> sigma_mm) {
   const bool is_in_mm = table.unit == "mm";
   const std::vector<double> ones(table.groups.size(), 1);
@@ -109,7 +109,7 @@ std::vector<std::vector<Field>> rows_of(const DistanceTable& table, const std::v
   return rows;
 }
 
-/// All of a group's fields, with its curve.
+/// All fields of a group, and its survival curve.
 nlohmann::ordered_json entry_of(const std::vector<Field>& fields, const std::vector<fit::Observation>& runs,
                                 double confidence) {
   nlohmann::ordered_json entry = json_of(fields);
@@ -156,7 +156,7 @@ std::string lengths_text(const DistanceTable& table, double confidence, std::opt
     num_runs += one.clogging.num_runs;
     num_clogs += one.clogging.num_clogs;
   }
-  // If a table marks censored droplets instead of clogged ones, the number of clogs shows this.
+  // The number of clogs reveals a table that marks censored droplets instead of clogged droplets.
   return text_table(rows_of(table, lengths, sigma_mm, confidence)) + legend_of(doubts) +
          fmt::format(
              "\nread: of {}, {} clogged (clogged = 1) and {} still moved where last seen (clogged = 0)\n",
@@ -173,7 +173,7 @@ std::vector<std::string> names_of_lengths() {
   std::vector<std::string> names = {"survival", "censored_distances"};
   const auto rows = rows_of(one_group, lengths_of(one_group, any_confidence), 1, any_confidence);
   for (const Field& field : rows.front()) names.push_back(field.name);
-  names.insert(names.end(), {"lambda", "note"});  // of the printed table
+  names.insert(names.end(), {"lambda", "note"});  // columns of the printed table
   return names;
 }
 

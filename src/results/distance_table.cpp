@@ -29,7 +29,8 @@ std::optional<double> number_in(const Value& value) {
   return number ? std::optional(*number) : std::nullopt;
 }
 
-/// Whether two labels are the same. A user may have rounded a number to three digits.
+/// Whether two labels are the same. Numbers are compared to three digits, because a user may have rounded
+/// them.
 bool are_alike(const Value& one, const Value& other) {
   constexpr double rounding = 0.005;
   const std::optional<double> number = number_in(one), number_there = number_in(other);
@@ -44,7 +45,7 @@ bool has_diameter_like(const DistanceTable& table, double sigma_mm) {
   });
 }
 
-/// Whether both have the same distances, in any order.
+/// Whether two groups have the same distances, in any order.
 bool are_same(const std::vector<fit::Observation>& here, const std::vector<fit::Observation>& there) {
   const auto sorted = [](const std::vector<fit::Observation>& runs) {
     std::vector<std::pair<double, bool>> all;

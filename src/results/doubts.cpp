@@ -15,7 +15,7 @@
 namespace clog::results {
 namespace {
 
-/// Whether clogs that may be artefacts of the mesh are so many that the length may be wrong.
+/// Whether so many clogs may be artefacts of the mesh that the length may be wrong.
 bool hangs_on_mesh(const Group& group) {
   constexpr double tolerated = 0.1;  // tolerated fraction of the clogs
   return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
@@ -32,10 +32,11 @@ bool is_near_friction_limit(const Group& group) {
 std::vector<Doubt> doubts_about(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool has_length = has_clogging_length(group.first_row);
-  // If all droplets passed the exit, more seeds would only raise the lower bound.
+  // If all droplets passed the exit, few clogs are no reason for a doubt, because more seeds would only raise
+  // the lower bound.
   const bool lacks_clogs =
       clogging.num_runs > 0 && group.num_passed != clogging.num_runs && clogging.num_clogs < enough_clogs;
-  // The worst case is that every failure hides a clog.
+  // Assumes the worst case, in which every failure hides a clog.
   const int num_failures = group.num_failed_counted + group.num_failed_somewhere;
   const bool do_failures_matter =
       num_failures > 0 &&

@@ -43,7 +43,7 @@ class Tree {
   double release() const { return release_; }
   const std::vector<Leaf>& leaves() const { return leaves_; }
 
-  /// Calls visit(member, true) for each droplet that is the first of its line of descent to pass the line.
+  /// Calls visit(member, true) for each droplet that passes the line if none of its ancestors has passed.
   /// Calls visit(member, false) for each droplet that ends before the line.
   template <class Visit>
   void at_line(double distance, const Visit& visit, const std::string& path = "") const {

@@ -21,8 +21,8 @@ bool has_role(const sweep::Column& column, ParameterRole role) {
   return column.parameter && column.parameter->role == role;
 }
 
-/// Appends the number of runs that each cause ended, and the lengths. All of them are unset if the causes are
-/// unknown.
+/// Appends the number of runs that each cause ended, and the lengths. All these fields are unset if the
+/// causes are unknown.
 void append_causes(const Group& group, std::vector<Field>& fields) {
   const bool are_known = !group.causes.empty();
   const auto add = [&](const std::string& name, auto number, const char* unit) {

@@ -36,7 +36,8 @@ Json scale_json(const LaboratoryScale& scale) {
           {"tension_mN_per_m_of_gamma_1", json_of(Value(scale.tension))}};
 }
 
-/// The fields that all groups with the same finding have. @param with_laboratory  see have_laboratory()
+/// The fields of a group; groups with the same finding have the same fields. @param with_laboratory  see
+/// have_laboratory()
 std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
   std::vector<Field> fields;
   const std::vector<Value> values = parameter_values(group.first_row);
@@ -67,7 +68,7 @@ Json diameters_json(const Diameters& all) {
           {"areas", all.areas}};
 }
 
-/// Numbers and areas per ancestor.
+/// Numbers and areas of droplets, divided by the number of ancestors.
 Json families_json(const Families& families) {
   Json lines = Json::array();
   for (const FamilyLine& line : families.lines) {
@@ -90,10 +91,11 @@ Json families_json(const Families& families) {
           {"lines", lines}};
 }
 
-/// All of a group's fields, with its curves.
+/// All fields of a group, and its curves.
 Json group_json(const Group& group, bool with_laboratory) {
   Json entry = json_of(all_fields(group, with_laboratory));
-  // Programs that draw groups need these names, because automatic values separate no curves.
+  // Programs that draw groups need the names of automatic parameters, because automatic values do not
+  // separate curves.
   entry["automatic"] = Json::array();
   for (const sweep::Column* column : group_columns())
     if (separating_value(*column, group.first_row) == Value() && column->get(group.first_row) != Value())

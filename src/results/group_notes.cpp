@@ -22,7 +22,7 @@ std::string legend(const std::vector<Group>& groups) {
   return legend_of(all);
 }
 
-/// Explains the stars of parameters that follow from others.
+/// Explains the stars of parameters whose values follow from other parameters.
 /// @param named  parameters that are columns or words above the table
 std::string note_of_automatic(const std::vector<Group>& groups, const std::vector<bool>& named) {
   for (std::size_t i = 0; i < named.size(); ++i)
@@ -87,7 +87,7 @@ std::string note_of_rest(const std::vector<Group>& groups) {
   return text + '\n';
 }
 
-/// Names droplets that were not released on the entrance.
+/// Gives the droplets that were not released on the entrance.
 std::string note_of_displaced(const std::vector<Group>& groups) {
   std::vector<double> places;
   for (const Group& group : groups)

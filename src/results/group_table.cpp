@@ -37,8 +37,8 @@ std::vector<std::string> parts_of(const std::optional<LaboratoryText>& laborator
   return parts;
 }
 
-/// The entries of a group's laboratory that not all groups have; all entries if all groups have the same
-/// laboratory.
+/// The entries by which a group's laboratory differs from those of other groups. All entries if all groups
+/// have the same laboratory.
 std::string laboratory_label(const Group& group, const std::vector<Group>& groups) {
   std::vector<std::string> own = parts_of(group.first_row.parameters.laboratory);
   const auto is_everywhere = [&](const std::string& part) {
@@ -52,14 +52,15 @@ std::string laboratory_label(const Group& group, const std::vector<Group>& group
   return joined(label.empty() ? own : label, "; ");
 }
 
-/// The value, to twelve digits if it is a number, as values are compared that follow from others.
+/// The value; a number is rounded to twelve digits, as in comparisons of values that follow from other
+/// values.
 Value without_round_off(const Value& value) {
   const auto* number = std::get_if<double>(&value);
   return number ? Value(twelve_digits(*number)) : value;
 }
 
 /// A parameter's value as text. User-supplied circles are named by their file, if it is known.
-/// @param digits  of a number
+/// @param digits  number of digits of a number
 std::string rounded_text(const Group& group, const std::vector<Group>& groups, const sweep::Column& column,
                          int digits = few_digits) {
   const sweep::RunRow& row = group.first_row;
@@ -85,7 +86,7 @@ std::vector<bool> varying_columns(const std::vector<Group>& groups) {
   return varies;
 }
 
-/// Whether groups with equal other values always have equal values, too.
+/// Whether groups with equal `others` always have equal values.
 template <class Value, class Others>
 bool is_determined_by(const std::vector<Group>& groups, const Value& value_of, const Others& others_of) {
   std::map<decltype(others_of(groups.front())), decltype(value_of(groups.front()))> known;
@@ -113,8 +114,8 @@ bool lacks_as_model(const sweep::Column& column, const sweep::RunRow& row) {
   return !column.applies_to(row.parameters) && column.applies_to(of_other_model);
 }
 
-/// A group with the column's value if one model alone has this parameter, with the same value in all of its
-/// groups; otherwise nullptr.
+/// A group with the column's value, if only one model has this parameter and all groups of this model have
+/// the same value; otherwise nullptr.
 const Group* group_of_only_model(const sweep::Column& column, const std::vector<Group>& groups) {
   const Group* with_value = nullptr;
   bool do_some_lack = false;
@@ -128,8 +129,8 @@ const Group* group_of_only_model(const sweep::Column& column, const std::vector<
   return do_some_lack ? with_value : nullptr;
 }
 
-/// Columns that vary. Two kinds are left out: automatic values that follow from the other columns, and
-/// columns that vary only because one of the models lacks them.
+/// Columns that vary, except two kinds: automatic values that follow from the other columns, and columns that
+/// vary only because one of the models does not have them.
 std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vector<bool>& varies) {
   const sweep::RunRow& first = groups.front().first_row;
   const RunParameters& run = first.parameters;
@@ -145,7 +146,8 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
         (varies[shown.size()] && !is_automatic_everywhere && !group_of_only_model(*column, groups)) ||
         (column->get(first) != Value() && is_of(scene_of(run).gap_key)) || is_stiffness);
   }
-  // Automatic values that depend on one another come first, each after those on which it depends.
+  // Automatic values that depend on one another come first. Each of them comes after the values on which it
+  // depends.
   std::vector<std::size_t> order(shown.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [](std::size_t i) {
@@ -159,9 +161,9 @@ std::vector<bool> shown_columns(const std::vector<Group>& groups, const std::vec
   return shown;
 }
 
-/// Parameters that need a mention because they have one value for all groups, or for all groups of the only
-/// model that has them; by the name of this model. Automatic values have a star.
-/// @param named  parameters that are named above or in the table; the function adds its own
+/// Parameters to be named above the table. They have one value in all groups, or in all groups of the only
+/// model that has the parameter. The key of the map is the name of this model. Automatic values have a star.
+/// @param named  parameters that are named above or in the table; the function adds those that it returns
 std::map<std::string, std::vector<std::string>> shared_words(const std::vector<Group>& groups,
                                                              const std::vector<bool>& varies,
                                                              const std::vector<bool>& shown,
@@ -199,8 +201,8 @@ std::vector<std::string> heads(const std::vector<ResultColumn>& columns) {
   return line;
 }
 
-/// The parameters in which the groups differ. If the groups' droplets differ in size or tilt, size and tilt
-/// come first; parameters that follow from these are separate.
+/// The parameters in which the groups differ. If the droplets differ in size or tilt, size and tilt come
+/// first, and parameters that follow from them are separate.
 struct ParameterColumns {
   std::vector<ResultColumn> droplets, others, following;
 
@@ -257,7 +259,7 @@ std::vector<ResultColumn> columns_of(const std::vector<Group>& groups, double co
   return columns;
 }
 
-/// Words in lines that fit a terminal, each after a space.
+/// The words, wrapped into lines that fit a terminal. A space precedes each word.
 std::string wrapped(const std::vector<std::string>& words) {
   constexpr std::size_t longest_line = 100;
   std::string text;
@@ -289,7 +291,7 @@ bool are_counts_equal(const Passage& one, const Passage& other) {
   return one.num_passed == other.num_passed && one.num_stopped == other.num_stopped;
 }
 
-/// Shortens a long list to the lines at which the counts change, and the last line.
+/// Shortens a long list: keeps only the last line, and the lines at which the counts change.
 std::vector<Passage> shown_passages(const std::vector<Passage>& all) {
   constexpr std::size_t most_lines = 8;
   if (all.size() <= most_lines) return all;
@@ -333,7 +335,8 @@ double length_of(const Group& group) {
   return group.laboratory ? group.laboratory->length : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// What became of the ancestors' area at some lines, with break-up=daughters.
+/// With break-up=daughters, a table of the droplets that passed some lines, and of the fate of the ancestors'
+/// area.
 std::string table_of_families(const std::vector<Group>& groups, const std::vector<ResultColumn>& parameters,
                               double confidence) {
   const bool has_lengths =
@@ -352,7 +355,7 @@ std::string table_of_families(const std::vector<Group>& groups, const std::vecto
       words.push_back(fmt::format("{:g}", line.distance));
       if (has_lengths)
         words.push_back(length_of(group) > 0 ? fmt::format("{:.6g}", line.distance * length_of(group)) : "-");
-      // Droplets whose fate is not known may still pass.
+      // The number is a lower bound, because droplets with an unknown fate may still pass.
       words.push_back((line.not_known >= 0.005 ? "> " : "") + or_dash(line.passed.number));
       words.push_back(or_dash(line.passed.number_interval));
       words.push_back(or_dash(line.passed.mean));
@@ -371,7 +374,7 @@ std::string table_of_families(const std::vector<Group>& groups, const std::vecto
                                : "";
 }
 
-/// Defines a clog, if resting droplets count as clogged, too; otherwise returns an empty text.
+/// A definition of a clog, if resting droplets also count as clogged; otherwise empty.
 std::string definition_of_clogs(const std::vector<Group>& groups) {
   const double dwell = groups.front().dwell;
   if (std::isinf(dwell)) return "";

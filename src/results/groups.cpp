@@ -34,7 +34,7 @@ std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
   return distances;
 }
 
-/// Distance of a run, and whether it clogged.
+/// The end of a run: its distance, and whether it is a clog.
 struct Ending {
   double distance;  ///< [sigma]
   bool is_clog;
@@ -68,7 +68,8 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   const double observed = sweep::observed_distance(run).value();
   const Ending last = {observed, is_clogged, cause_of(run)};
   if (!may_have_dwells(run, dwell)) return last;
-  // The mechanism of a droplet that moved on is unknown, so its long rest counts as a clog by `other`.
+  // A long rest counts as a clog with the cause `other`, because the mechanism is unknown if the droplet
+  // moved on.
   const bool has_failed = run.status == RunStatus::failed;
   const Dwell* first = run.dwells.first_longer(dwell);
   if (first && (!has_failed || first->distance <= observed)) return {first->distance, true, Cause::other};
@@ -115,7 +116,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
                     shortest(dwell), rounded_up(known_from)));
 }
 
-/// Fits clogging lengths to those intact runs that reached `from_distance`.
+/// Fits clogging lengths to the intact runs that reached `from_distance`.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
   if (!has_clogging_length(group.first_row)) return;
   // The ends that `is_end` selects count as events; all other runs are censored.
@@ -170,8 +171,8 @@ void fit_meetings(Group& group, const Meetings& meetings, double confidence) {
   if (meetings.way > 0) group.contacts_per_length = static_cast<double>(meetings.num_contacts) / meetings.way;
 }
 
-/// If only one or two runs travelled far enough to have a speed, they do not represent all runs. Their mean
-/// is then not printed.
+/// The mean speed, unless only one or two runs travelled far enough to have a speed, because these do not
+/// represent all runs.
 fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   constexpr int fewest_runs = 3;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -179,7 +180,7 @@ fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   return speed;
 }
 
-/// Counts a run that max-time ended after its droplet had rested for long.
+/// Adds a run to the count of resting droplets, if max-time ended the run after a long rest.
 void add_rest(const sweep::RunRow& run, Group& group) {
   constexpr double diameters = 10;
   const double rest = run.time - run.dwells.last_begin;
@@ -188,16 +189,15 @@ void add_rest(const sweep::RunRow& run, Group& group) {
   group.shortest_rest = std::min(group.shortest_rest, rest);
 }
 
-/// Distance and time until the end; for a clogged run, until its last dwell began. Unknown in files without
-/// dwells.
+/// Distance and time of a run until its end or, if it clogged, until its last dwell began. Unknown in files
+/// without dwells.
 fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const double way = is_clogged ? run.dwells.last_distance : run.distance;
   return {way / run.parameters.drag.terminal_speed, is_clogged ? run.dwells.last_begin : run.time};
 }
 
-/// A group has no speed if its droplets sank by less than half a diameter on average. Nor has a single
-/// droplet that sank by less than this.
+/// The mean speed of a group; NaN if its droplets sank by less than half a diameter on average.
 fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
   constexpr double shortest_way = 0.5;  // [sigma]
   double way = 0;
@@ -223,8 +223,8 @@ void keep_longest(std::vector<const sweep::RunRow*>& runs) {
 struct Tally {
   std::vector<Ending> endings;  ///< runs that count for the clogging length
   std::vector<double> clogs;    ///< distances of the clogs [sigma]
-  /// Distances of runs that met an obstacle but did not clog [sigma]. Droplets that sank freely are excluded,
-  /// because all of them go equally far.
+  /// Distances of runs that met an obstacle but did not clog [sigma]. Runs without obstacles on their path
+  /// are excluded, because all of them have equal distances.
   std::vector<double> others;
   std::vector<Arrival> arrivals;
   Meetings meetings;
@@ -233,7 +233,7 @@ struct Tally {
   std::vector<fit::Displacement> displacements;
 };
 
-/// Includes a run in the clogging lengths, if the run counts for them.
+/// Includes a run in the clogging lengths, if it counts.
 void add_ending(const sweep::RunRow& run, double from_distance, Group& group, Tally& tally) {
   const Ending from_release = ending_of(run, group.dwell);
   if (run.steps > 0) group.dwells_known_from = later(group.dwells_known_from, run.dwells.known_from);
@@ -273,8 +273,9 @@ void add_motion(const sweep::RunRow& run, Group& group, Tally& tally) {
   if (run.steps > 0) tally.travels_until_arrest.push_back(travel_until_arrest(run));
 }
 
-/// Counts failed and damaged runs, and includes all runs that are observed. Failed runs are excluded from
-/// speeds and lateral displacements, because the failure may have changed these before it was detected.
+/// Counts failed and damaged runs, and includes all runs that have an outcome (is_observed()). Failed runs
+/// are excluded from speeds and lateral displacements, because the failure may have changed these before it
+/// was detected.
 Tally tally_of(std::span<const sweep::RunRow* const> runs, double from_distance, Group& group) {
   Tally tally;
   for (const sweep::RunRow* run : runs) {

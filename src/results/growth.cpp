@@ -15,7 +15,7 @@ bool may_grow_along(const sweep::Key& key) {
   return key.parameter && key.kind != ValueKind::word && key.parameter->role != ParameterRole::numerics;
 }
 
-/// Whether a text of the key, such as `auto`, leaves its value to other keys.
+/// Whether one of the key's texts, such as `auto`, means that the value follows from other keys.
 bool has_automatic_text(const sweep::Key& key, const sweep::Settings& settings) {
   return key.kind != ValueKind::word &&
          std::ranges::any_of(settings.values(key.name), [&](const std::string& value) {

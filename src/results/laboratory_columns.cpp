@@ -31,8 +31,8 @@ double time_to_clog(const Group& group) {
 }
 
 /// The interfacial tension of a polygon [mN/m]; NaN for the soft disk. Runs of the laboratory's droplet have
-/// the tension of this droplet. It differs a little from the tension that follows from their Gamma, which is
-/// rounded.
+/// the tension of this droplet. This tension differs a little from the tension that follows from the Gamma of
+/// the runs, which is rounded.
 double tension_of(const Group& group) {
   const RunParameters& run = group.first_row.parameters;
   const LaboratoryScale scale = scale_of(group);

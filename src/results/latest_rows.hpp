@@ -11,7 +11,7 @@
 
 namespace clog::results {
 
-/// A run in the table and the journal of a sweep: its row and its record, as found by latest_rows().
+/// A run that latest_rows() found in the table or the journal of a sweep: its row and its record.
 struct LatestRow {
   sweep::RunRow* in_table = nullptr;        ///< nullptr: only the journal has the run
   store::Journal::Entry* record = nullptr;  ///< the record that replaces the table's row; nullptr: none
@@ -21,9 +21,9 @@ struct LatestRow {
 };
 
 /// Joins the rows of a table with the records of its journal, oldest first. A record replaces the earlier row
-/// of its run, except if that row is final and the record is not: in that case, the journal has lost the
-/// run's last record. The result has the rows in their order, followed by the runs that only the journal has.
-/// If the table repeats a run, records replace the first of its rows.
+/// of its run, unless that row is final and the record is not. In this case, the journal has lost the run's
+/// last record. The result has the rows in the order of the table, followed by the runs that only the journal
+/// has. If the table has several rows of a run, records replace the first of these.
 /// @param key  function of a row that identifies the run
 template <class Key = std::string (*)(const sweep::RunRow&)>
 std::vector<LatestRow> latest_rows(std::span<sweep::RunRow> rows, std::span<store::Journal::Entry> records,
@@ -45,7 +45,7 @@ std::vector<LatestRow> latest_rows(std::span<sweep::RunRow> rows, std::span<stor
   return runs;
 }
 
-/// If no sweep writes to a file, its runs are not running.
+/// Corrects the status of a row in a file to which no sweep is writing: its run cannot be running.
 inline void interrupt_if_running(sweep::RunRow& row) {
   if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
 }

@@ -36,7 +36,7 @@ struct Part {
 Part whole_part(const std::string& path) {
   if (store::Journal::is_open(store::journal_path(path)))
     throw Error("cannot merge " + path + " (a sweep is writing to it); wait for it to end, or stop it");
-  store::read_sweep(path);  // this refuses a damaged file
+  store::read_sweep(path);  // throws if the file is damaged
   Salvage found = salvage(path);
   if (!found.damage.empty())
     throw Error(fmt::format("cannot merge {} (damaged: {}); `clogsweep salvage` keeps what is whole", path,
@@ -89,7 +89,7 @@ class Rows {
     paths_[place] = path;
   }
 
-  /// The rank of a row: if two files have the same run, the row with the higher rank is kept.
+  /// The rank of a row. If two files have the same run, the row with the higher rank is kept.
   static int rank_of(const RunRow& row) {
     if (sweep::is_result(row.status)) return 3;
     if (sweep::is_final(row)) return 2;
@@ -116,15 +116,15 @@ class Rows {
   }
 };
 
-/// Numerical keys, such as vertices, that are the only difference between parameter sets of two files. Empty
-/// if two files have a parameter set in common.
+/// Numerical keys, such as `vertices`, if parameter sets of two files differ only in these keys. Empty if two
+/// files have a parameter set in common.
 std::set<std::string> differing_numerics(const std::vector<Part>& parts) {
   const auto is_numerical = [](const sweep::Column& column) {
     return column.parameter && column.parameter->role == ParameterRole::numerics;
   };
   std::map<std::vector<Value>, const Part*> sets;
   std::map<std::vector<Value>, std::pair<const Part*, const RunRow*>>
-      alike;  // equal sets apart from numerical keys
+      alike;  // sets that are equal apart from numerical keys
   std::set<std::string> names;
   for (const Part& part : parts)
     for (const RunRow& row : part.table.rows) {
@@ -143,7 +143,7 @@ std::set<std::string> differing_numerics(const std::vector<Part>& parts) {
   return names;
 }
 
-/// Adds those circles of a file that are missing.
+/// Adds the circles of a file that `all` does not contain yet.
 void add_circles(const store::SweepFile& file, std::vector<store::CircleFile>& all) {
   for (const store::CircleFile& one : file.circles) {
     const auto known =
@@ -220,8 +220,8 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   return console::json_text(part, -1) + attribute(file.provenance, "parts");
 }
 
-/// Attributes that a new file does not take from `maker`. In the new file they summarise the attributes of
-/// its parts.
+/// Attributes that a new file does not take from `maker`. They summarise the attributes of the file's parts
+/// instead.
 static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
                                                            "num_wanted"};
 
@@ -229,7 +229,7 @@ store::Provenance joint_provenance(const store::Provenance& maker, const std::st
                                    const std::vector<const store::SweepFile*>& files,
                                    const std::string& parts) {
   store::Provenance all = maker;
-  std::set<std::string> sessions;  // each begins with its time, so they are in order of time
+  std::set<std::string> sessions;  // each session begins with its time, so the set is in order of time
   if (attribute(maker, "sessions").empty())
     sessions.insert(fmt::format("{} {} {} 1 {}", attribute(maker, "start_time"), attribute(maker, "version"),
                                 attribute(maker, "git_describe"), attribute(maker, "command_line")));

@@ -37,11 +37,11 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 struct Run {
   double distance;
   bool is_clog;
-  std::size_t seed;  // place of its seed among the seeds of the mixture
+  std::size_t seed;  // place of the run's seed among the seeds of the mixture
 };
 struct Size {
   double share;
-  std::vector<Run> runs;  // by distance; at equal distances clogs come first
+  std::vector<Run> runs;  // sorted by distance; at equal distances clogs come first
 };
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why, const std::string& remedy) {
@@ -55,7 +55,7 @@ double number_in(std::string_view word, const std::string& text) try {
   refuse(text, error.what(), "use e.g. diameter=2.8mm:0.3,3.2mm:0.7");
 }
 
-/// A value as text that is equal for equal values; empty for an unset one.
+/// A text for a value. Equal values have equal texts; an unset value has an empty text.
 std::string name_of(const Value& value) {
   const auto* const number = std::get_if<double>(&value);
   return number ? shortest(twelve_digits(*number)) : sweep::text_of(value);
@@ -64,7 +64,7 @@ std::string name_of_diameter(double in_mm) {
   return std::isfinite(in_mm) ? shortest(twelve_digits(in_mm)) + " mm" : "";
 }
 
-/// Tells groups apart by the diameter of their droplets, or by a column.
+/// Distinguishes groups by the diameter of their droplets, or by a column.
 class Key {
  public:
   Key(const std::string& name, const std::string& text) : name_(name), text_(text) {
@@ -85,7 +85,7 @@ class Key {
     if (column_) return name_of(column_->get(group.first_row));
     return name_of_diameter(group.laboratory.value_or(LaboratoryScale()).length);
   }
-  /// The same text for a value that the user typed.
+  /// The corresponding text for a value that the user typed.
   std::string of(const std::string& value) const {
     if (column_)
       return column_->kind == ValueKind::word ? value : shortest(twelve_digits(number_in(value, text_)));
@@ -101,8 +101,8 @@ class Key {
   const sweep::Column* column_ = nullptr;
 };
 
-/// The parameters in which groups differ, except those that are automatic. A parameter that some groups lack,
-/// as those of another model do, counts only if it differs between the other groups.
+/// The parameters in which groups differ, except automatic parameters. A parameter that applies only to some
+/// of the groups counts only if it differs between these groups.
 std::string differences(const std::vector<const Group*>& groups) {
   std::vector<std::string> names;
   for (const sweep::Column* column : group_columns()) {
@@ -204,7 +204,7 @@ Estimate estimate(const std::vector<Size>& sizes, const std::vector<int>& times,
   return all;
 }
 
-/// Seeds that occur in the same sizes, by these sizes.
+/// The strata of the seeds: each stratum contains the seeds that occur in the same set of sizes.
 std::vector<std::vector<std::size_t>> strata_of(const std::vector<Size>& sizes, std::size_t num_seeds) {
   std::vector<std::set<std::size_t>> sizes_of(num_seeds);
   for (std::size_t i = 0; i < sizes.size(); ++i)
@@ -267,7 +267,7 @@ Mixture mix(const std::string& text, const std::vector<Group>& groups, double co
                            chosen[i]->runs[j].clogged,
                            seeds.try_emplace(chosen[i]->seeds[j], seeds.size()).first->second});
     std::ranges::sort(size.runs, {}, [](const Run& run) { return std::pair(run.distance, !run.is_clog); });
-    // If the last droplet clogged, P is 0 from there on, otherwise unknown.
+    // Beyond the last distance, P is 0 if the last droplet clogged, otherwise P is unknown.
     if (!size.runs.back().is_clog) end = std::min(end, size.runs.back().distance);
   }
   std::set<double> places;

@@ -95,7 +95,7 @@ SweepCost plus(SweepCost cost, double seconds) {
   return cost;
 }
 
-/// Replaces the estimate and its limits; the interval keeps its relative width.
+/// Replaces the estimate and the bound by those of `stored`. The interval keeps its relative width.
 SweepCost with_expected(SweepCost trials, const SweepCost& stored) {
   trials.bound = stored.bound;
   trials.lower *= stored.expected / trials.expected;
@@ -125,7 +125,7 @@ void add_expected(Preview& preview, const sweep::Plan& plan, const Sample& sampl
   preview.json["sample"] = {{"runs", num_runs}, {"ended", num_finished}, {"source", sample.source}};
 }
 
-/// @param cost  of the whole plan
+/// @param cost  cost of the whole plan
 void add_left(Preview& preview, const sweep::Plan& plan, const std::string& output,
               const StoredSample& stored, const SweepCost& cost) {
   const SweepCost left = plus(cost, -stored.seconds);
@@ -135,8 +135,8 @@ void add_left(Preview& preview, const sweep::Plan& plan, const std::string& outp
   preview.json["left"] = hours_json(left);
 }
 
-/// Prints a warning, before the runs, if clogging lengths may be below an obstacle spacing. clogfit would
-/// mark such lengths with the doubt `v`.
+/// Adds a warning if clogging lengths may be below an obstacle spacing. clogfit would mark such lengths with
+/// the doubt `v`.
 void add_short_lengths(Preview& preview, const Sample& sample) {
   constexpr std::int64_t fewest = 3;
   constexpr std::int64_t one_in =
@@ -157,8 +157,8 @@ SweepCost times(SweepCost cost, double factor) {
   return cost;
 }
 
-/// Limits of the cost of a sweep that adds seeds.
-/// @param cost  of the sweep's first round
+/// Prints limits of the cost of a sweep that adds seeds.
+/// @param cost  cost of the sweep's first round
 void add_rounds(Preview& preview, const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
   const std::int64_t needed = rule.clogs_needed(), most = rule.most_seeds();
   preview.line("# this is the first round: +-{} % needs {} per parameter set",

@@ -15,8 +15,8 @@
 namespace clog::results {
 namespace {
 
-/// The group's break-ups; nullptr if its mechanisms are unknown. (All files with break-ups also have
-/// mechanisms.)
+/// The length of the group's break-ups; nullptr if its mechanisms are unknown. (All files with break-ups also
+/// have mechanisms.)
 const fit::CloggingLength* break_ups(const Group& group) {
   for (const Group::EndsBy& cause : group.causes)
     if (cause.text->cause == Cause::broken) return &cause.ends;
@@ -149,9 +149,9 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
   if (have_few_speeds)
     columns.push_back(
         {"of", [](const Group& group) { return std::to_string(group.relative_speed_steady.num_runs); }});
-  // Speeds in laboratory units are those of all runs.
+  // Speeds in laboratory units are speeds of all runs, so this column belongs to them.
   if (has_laboratory || have_few_speeds) append("all runs", speed_of_all, columns);
-  // Only groups with rows of posts have these columns, because in a random array droplets move straight on
+  // Only groups with rows of posts get these columns. In a random array, droplets do not drift sideways on
   // average.
   if (std::ranges::any_of(groups, has_rows)) {
     append("lateral/r", slope_of, columns);
@@ -160,7 +160,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
   return columns;
 }
 
-/// A number from the single run of a group without randomness.
+/// A column with a number from the single run of a group without randomness.
 template <class Place>
 ResultColumn column_of_run(const char* name, Place number) {
   return {name, [=](const Group& group) { return console::plain(number(group.first_row), 4); }};

@@ -20,12 +20,13 @@ std::string interval_text(const fit::CloggingLength& clogging);
 
 /// The columns of the scene's results.
 /// @param groups  not empty
-/// @param has_laboratory  whether columns in laboratory units follow. Their speeds are those of all runs.
+/// @param has_laboratory  whether columns in laboratory units follow. The speeds in those columns are of all
+/// runs.
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory);
 
-/// Whether the table shows the mechanisms. It does if clogs differ in their mechanisms, or if there are clogs
-/// and some runs have been excluded.
+/// Whether the table shows the mechanisms of clogs: if the mechanisms differ, or if there are clogs and some
+/// runs have been excluded.
 bool are_mechanisms_shown(const std::vector<Group>& groups);
 bool have_some_broken(const std::vector<Group>& groups);
 

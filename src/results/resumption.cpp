@@ -19,7 +19,8 @@ using Entry = SweepRuns::Entry;
 /// Runs by their identity.
 using Known = std::unordered_map<std::string, std::unique_ptr<Entry>>;
 
-/// A salvaged file may lack its config. This function then compares the rows with the settings.
+/// Names the settings in which the file differs from the sweep. If a salvaged file has lost its config,
+/// compares the rows with the settings.
 std::string settings_that_differ(const Resumption& sweep, const store::SweepFile& table) {
   if (!attribute(table.provenance, "config").empty())
     return differing_keys(stored_settings(sweep.path, table.provenance), sweep.settings);
@@ -44,7 +45,7 @@ void refuse_other_sweep(const Resumption& sweep, const store::SweepFile& table) 
                             differing, remedy));
 }
 
-/// Refuses runs of another sweep. They are in the journal if that sweep had the same path.
+/// Refuses runs of another sweep. The journal contains such runs if another sweep had the same path.
 void refuse_foreign_records(const Resumption& sweep, const std::vector<LatestRow>& runs) {
   const auto is_new = [](const LatestRow& run) { return !run.in_table; };
   if (std::ranges::none_of(runs, is_new)) return;
@@ -57,15 +58,15 @@ void refuse_foreign_records(const Resumption& sweep, const std::vector<LatestRow
                       sweep.path, store::journal_path(sweep.path), differing));
 }
 
-/// Whether the row belongs to the run with this row's task number in the plan. If the sweep resumes
-/// unchanged, all rows do.
+/// Whether the task with the row's number in the plan is the row's run. If the sweep resumes unchanged, this
+/// is true for all rows.
 bool is_of_its_task(const sweep::RunRow& row, const sweep::Plan& plan) {
   return row.task >= 0 && row.task < plan.size() &&
          sweep::identity(row) == sweep::identity(sweep::describe(plan.task(row.task)));
 }
 
-/// Assigns the runs to their tasks. A task without a run gets the run of another laboratory, because runs do
-/// not depend on the laboratory. If no task of the row's own laboratory needs the row, its laboratory is
+/// Assigns the runs to their tasks. A task without a run gets the equal run of another laboratory, because
+/// runs do not depend on the laboratory. If no task of that laboratory needs the row, the row's laboratory is
 /// changed; otherwise the row is copied.
 void find_runs(Known& known, std::int64_t num_tasks, const sweep::Plan& plan, SweepRuns& runs) {
   std::unordered_map<std::string, std::string> others;  // by identity without a laboratory
@@ -99,7 +100,7 @@ void find_runs(Known& known, std::int64_t num_tasks, const sweep::Plan& plan, Sw
   }
 }
 
-/// The number of tasks, from the start of the plan, that may have begun.
+/// The number of tasks at the start of the plan that may have begun.
 std::int64_t num_tasks_known(const Resumption& sweep, const Known& known, const SweepRuns& runs) {
   std::int64_t last_seed = -1;
   for (const auto& [run, entry] : known)
@@ -132,7 +133,7 @@ std::int64_t adopt(const Resumption& sweep, store::SweepFile table, std::vector<
       continue;
     }
     std::unique_ptr<Entry>& run = are_usual ? runs.place_of(row.task) : known[sweep::identity(row)];
-    // Rows are moved, not copied: with a large sweep, there is memory for only one copy of each row.
+    // Rows are moved, not copied, because there may be memory for only one copy of the rows of a large sweep.
     if (!run) run = std::make_unique<Entry>(one.record ? std::move(*one.record) : Entry{std::move(row), {}});
   }
   const std::int64_t num_tasks = num_tasks_known(sweep, known, runs);

@@ -16,7 +16,7 @@ struct Resumption {
   const std::string& path;
   const sweep::Plan& plan;
   const sweep::Settings& settings;
-  std::int64_t num_wanted;  ///< number of tasks, from the start of the plan, that are requested
+  std::int64_t num_wanted;  ///< number of tasks at the start of the plan that are requested
 };
 
 /// Takes the runs from the table and the journal of earlier sessions, and assigns them to their tasks.

@@ -23,7 +23,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-constexpr std::size_t longest_list = 2500;  // length of a key's text; longer lists become points
+constexpr std::size_t longest_list = 2500;  // longest text of a key; longer lists become points
 
 std::string identity_without_seed(sweep::RunRow run) {
   run.parameters.seed = 0;
@@ -36,7 +36,7 @@ double number_or_infinity(const std::string& text) try {
   return std::numeric_limits<double>::infinity();
 }
 
-/// Sorts numbers by size, then other texts.
+/// Order of texts: numbers by size, then other texts.
 bool is_less(const std::string& a, const std::string& b) {
   return std::pair(number_or_infinity(a), a) < std::pair(number_or_infinity(b), b);
 }
@@ -45,7 +45,7 @@ bool is_run(const RunParameters& run, const sweep::RunRow& row) {
   return sweep::identity_in_any_version(sweep::describe(run)) == sweep::identity_in_any_version(row);
 }
 
-/// The seeds as text, such as `1..10,15`; as several texts if many seeds are not consecutive.
+/// The seeds as text, such as `1..10,15`; several texts if there are many gaps between the seeds.
 Texts texts_of(const std::set<std::uint32_t>& seeds) {
   Texts texts;
   std::string text;
@@ -66,8 +66,8 @@ void set_all(sweep::Settings& settings, const Texts& texts) {
     if (!texts[i].empty()) settings.set(sweep::keys()[i].name, texts[i]);
 }
 
-/// Texts of a plan's first parameter set, with the row's values where they differ; nullopt if the name of a
-/// file is unknown.
+/// Texts of a plan's first parameter set, changed to the row's values where these differ; nullopt if the name
+/// of a file is unknown.
 std::optional<Texts> texts_of(const sweep::RunRow& row, const sweep::Plan& plan) {
   const sweep::RunRow first = sweep::describe(plan.group(0));
   Texts texts = plan.texts(0);
@@ -158,7 +158,7 @@ void RunList::add_rows(const std::string& path, const sweep::Plan& plan,
 
 namespace {
 
-/// Keys with different texts, by place.
+/// Places of the keys that have different texts.
 std::vector<std::size_t> differing_places(const std::vector<const Texts*>& all) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < all.front()->size(); ++i)

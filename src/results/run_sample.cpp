@@ -38,7 +38,7 @@ RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunP
 /// Tasks spread over parameter sets and, if there are few sets, over seeds. Tasks of one array are adjacent.
 std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   constexpr std::int64_t most_tasks = 24;
-  constexpr std::int64_t most_seeds = 4;  // with many parameter sets, because arrays may take long to build
+  constexpr std::int64_t most_seeds = 4;  // with many parameter sets, because building arrays may take long
   const std::int64_t num_tasks = std::min(plan.size(), most_tasks);
   const std::int64_t num_groups = plan.num_groups();
   std::vector<std::int64_t> tasks;
@@ -115,7 +115,7 @@ Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
     const double end = elapsed() + share;
     const auto job = jobs(tasks[i], {});
     const auto answers = [&] { return job->refresh(); };
-    advance_until(*job, seconds_to_try + grace, answers);  // time for its array and its release
+    advance_until(*job, seconds_to_try + grace, answers);  // includes the time for array and release
     const sweep::RunRow first = job->row();
     advance_until(*job, std::max(end, elapsed() + fewest_seconds), [] { return false; });
     advance_until(*job, seconds_to_try + grace, answers);

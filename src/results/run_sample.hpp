@@ -16,16 +16,16 @@ double work_per_step(const RunParameters& run);
 struct Sample {
   std::vector<RunCost> costs;
   std::string source;
-  std::string failure;  ///< why the first run that could not begin failed; `costs` excludes such runs
+  std::string failure;  ///< why the first run that could not begin failed; such runs are not in `costs`
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
-  double spacing = 0;          ///< obstacle spacing of such a run [sigma]
+  double spacing = 0;          ///< obstacle spacing of one of these short runs [sigma]
   bool has_own_circles = false;
 
   void count(const sweep::RunRow& row);
 };
 
-/// The sample of runs in the sweep's own file; empty without a file.
+/// The sample of runs that the sweep's file already contains; empty without a file.
 struct StoredSample {
   Sample sample;
   std::vector<WaitingRuns> waiting;  ///< runs of each parameter set that are not in the sample
@@ -38,7 +38,8 @@ struct StoredSample {
 StoredSample stored_runs(const sweep::Plan& plan, const std::string& path);
 
 /// Runs short pieces of some tasks. Another process may compute the jobs; it answers between slices of its
-/// work. A job that takes too long is dropped, such as a release that does not come to rest.
+/// work. Jobs that take too long are dropped, for instance if the droplet does not come to rest at its
+/// release.
 Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs);
 SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample);
 

@@ -65,8 +65,8 @@ Salvage salvage(const std::string& path) {
   for (const LatestRow& run : latest_rows(found.table.rows, records)) {
     const bool is_unfinished = sweep::is_unfinished(run.row().status);
     if (run.record && !is_unfinished && !run.was_final()) ++found.num_from_journal;
-    // Rows are moved, because the memory of a large sweep suffices for one copy of each row. Only the row of
-    // a snapshot is copied.
+    // Rows are moved, because there may be memory for only one copy of the rows of a large sweep. Only rows
+    // with a snapshot are copied.
     if (run.record && is_unfinished && !run.record->snapshot.empty()) {
       rows.push_back(run.row());
       found.snapshots.push_back(std::move(*run.record));

@@ -19,8 +19,8 @@ namespace {
 
 using sweep::RunRow;
 
-/// Times of the parameter sets of the last config. With --until-precision, sets may request different numbers
-/// of seeds. These numbers are unknown here, so each set counts with the mean number.
+/// Times of the parameter sets of the last config. With --until-precision, sets may have different numbers of
+/// seeds. This function does not know these numbers, so it uses their mean for each set.
 std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep::Plan& plan,
                                     std::int64_t num_wanted) {
   std::vector<SetTimes> sets(static_cast<std::size_t>(plan.num_groups()));
@@ -32,7 +32,7 @@ std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep
     SetTimes& set = sets[static_cast<std::size_t>(group)];
     const std::int64_t wanted =
         num_wanted == plan.size() ? plan.num_seeds(group) : num_wanted / plan.num_groups();
-    // Twins are not computed.
+    // Tasks with a twin are not computed.
     if (!plan.has_twin(group))
       set.num_waiting = std::max<std::int64_t>(0, wanted - set.num_finished - set.num_running);
   }

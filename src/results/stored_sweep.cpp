@@ -126,8 +126,8 @@ sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
   });
 }
 
-/// Whether the key has a list, or a list in points. Values of other keys may vary, too, but these values
-/// follow from a word in a list.
+/// Whether the user gave the key a list, or a list in points. Other keys may also have several values, but
+/// these follow from a word in a list.
 static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
   const std::vector<std::string>& keys = settings.points().keys;
   return settings.values(key.name).size() > 1 || std::ranges::find(keys, key.name) != keys.end();
@@ -162,8 +162,8 @@ RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, 
   RunCount count;
   count.num_beyond = std::count_if(file.rows.begin(), file.rows.end(),
                                    [&](const sweep::RunRow& row) { return row.task >= plan.size(); });
-  // The stored number is that of the last command. An earlier --until-precision may have requested more runs,
-  // which have rows.
+  // The stored number belongs to the last command. An earlier command with --until-precision may have
+  // requested more runs; the file has rows of these.
   count.num_runs = std::max(stored_num_wanted(path, file.provenance, plan) + count.num_beyond,
                             static_cast<std::int64_t>(file.rows.size()));
   return count;

@@ -13,8 +13,8 @@
 namespace clog::results {
 namespace {
 
-/// Limits the length of `sessions`, however often a sweep is resumed: the oldest lines are removed, and a
-/// long last line is cut.
+/// Limits the length of the attribute `sessions` of a sweep that is resumed often. Removes the oldest lines,
+/// and cuts a long last line.
 std::string latest_lines(std::string text) {
   constexpr std::size_t longest_line = 2000;
   constexpr std::size_t longest = 30'000;
@@ -42,7 +42,7 @@ SweepFiles::SweepFiles(std::string path, const sweep::Plan& plan, store::Provena
 }
 
 SweepFiles::Earlier SweepFiles::take_earlier() {
-  store::SweepFile table = read_table();  // first, because records without a table are refused
+  store::SweepFile table = read_table();  // comes first, because records without a table are refused
   return {std::move(table), take_records()};
 }
 
@@ -64,7 +64,7 @@ store::SweepFile SweepFiles::read_table() {
   provenance_ = std::move(all);
   for (const store::CircleFile& one : table.circles)
     if (std::ranges::none_of(circles_, [&](const auto& known) { return known.circles == one.circles; }))
-      circles_.push_back({"", one.circles});  // of runs outside this plan
+      circles_.push_back({"", one.circles});  // circles of runs outside this plan
   return table;
 }
 
@@ -110,8 +110,8 @@ void SweepFiles::write_down(const Entry& entry) {
 }
 
 void SweepFiles::tick() {
-  // With more runs, writing the whole table takes longer, and the journal must sometimes be rewritten.
-  // Together, these two tasks may take two per cent of the time.
+  // Writing the whole table and rewriting the journal take longer with more runs. Together, they may take two
+  // per cent of the time.
   const Clock::time_point now = Clock::now();
   if (publication_.valid()) {
     if (publication_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
@@ -136,7 +136,7 @@ sweep::RunRow SweepFiles::published(sweep::RunRow row) const {
   return row;
 }
 
-/// Publishes all rows, also of runs outside the plan.
+/// Publishes all rows, including those of runs outside the plan.
 std::optional<std::string> SweepFiles::publish_to(const store::OutputPath& place, const std::string& stamp,
                                                   const std::vector<const Entry*>& all,
                                                   const store::Provenance& provenance) const {
@@ -153,9 +153,9 @@ void SweepFiles::publish() {
   end_publication();
 }
 
-/// Starts to write the table in another thread. A removed table is written again. If the table was replaced,
-/// writes it under another name and ends the sweep. If the journal was removed, makes a new one, writes the
-/// table, and ends the sweep.
+/// Starts to write the table in another thread. If the table was removed, writes it again. If the table was
+/// replaced, writes it under another name and ends the sweep. If the journal was removed, makes a new
+/// journal, writes the table, and ends the sweep.
 void SweepFiles::begin_publication() {
   const std::string there = place_.stamp();
   if (!there.empty() && there != stamp_) rescue();
@@ -191,7 +191,7 @@ void SweepFiles::end_publication() {
   stamp_ = *std::move(published);
 }
 
-/// Writes the table under another name, so that a foreign file keeps its place.
+/// Writes the table under another name, so that the file that has replaced it stays.
 void SweepFiles::rescue() {
   if (journal_.is_there()) journal_.rewrite(runs_.all());
   int number = 1;
@@ -203,8 +203,9 @@ void SweepFiles::rescue() {
       path(), rescued().path()));
 }
 
-/// Rewrites the journal in advance. It will be used when the table contains the results of all records before
-/// `place`. Then the journal needs only the unfinished runs, and the records from `place` on.
+/// Prepares a shorter journal while the table is being written. The shorter journal contains only the
+/// unfinished runs and the records from `place` on. It replaces the journal when the table contains the
+/// results of all records before `place`.
 void SweepFiles::prepare_journal(const std::vector<const Entry*>& all, std::uint64_t place) {
   std::deque<Entry> unfinished;
   std::vector<const Entry*> needed;

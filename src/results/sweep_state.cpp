@@ -32,8 +32,8 @@ void SweepState::want(const std::vector<std::int64_t>& tasks) {
   for (const std::int64_t task : tasks) request(task);
 }
 
-/// Requests a task that is not over. If it has a twin, it waits for the twin instead. Tasks are requested in
-/// increasing order.
+/// Requests a task that is not over. A task with a twin is not computed, but waits for its twin. Tasks must
+/// be requested in increasing order.
 void SweepState::request(std::int64_t task) {
   if (const Entry* const run = runs_.find(task); run && runs_.is_over(run->row)) return;
   const std::optional<std::int64_t> twin = plan_->twin(task);

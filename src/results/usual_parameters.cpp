@@ -12,7 +12,7 @@
 namespace clog::results {
 namespace {
 
-/// The row's model and preset, and defaults for all other keys; not resolved.
+/// Unresolved parameters: the row's model and preset, and defaults for all other keys.
 RunParameters defaults_for(const sweep::RunRow& row) {
   sweep::Settings settings;
   settings.set("model", name(row.parameters.model));
@@ -28,8 +28,8 @@ bool are_circles_missing(const RunParameters& run) {
          !(run.obstacles.own && run.obstacles.own->are_known());
 }
 
-/// Whether the column's key applies only to user-supplied circles, so that a row of the default layout lacks
-/// a value.
+/// Whether the column's key applies only to user-supplied circles, so that rows of the default layout have no
+/// value.
 bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
   return scene_of(run).walls_from == WallsFrom::circles && column.parameter &&
          column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());
@@ -37,8 +37,8 @@ bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
 
 enum class Others { all, independent };
 
-/// Whether `auto` would give this value, computed either from all other parameters of the row, or only from
-/// those that do not follow from this value.
+/// Whether `auto` would give the row's value in this column. The automatic value is computed either from all
+/// other parameters of the row, or only from the parameters that do not follow from the column's value.
 bool is_automatic_with(Others others, const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
   if (are_circles_missing(row.parameters)) return true;  // unknown without the circles
@@ -53,7 +53,7 @@ bool is_automatic_with(Others others, const sweep::Column& column, const sweep::
   return false;
 }
 
-/// Whether all values that may follow from the column's value follow from the row's other values.
+/// Whether all parameters that may follow from the column's value have their automatic value in this row.
 bool are_followers_automatic(const sweep::Column& column, const sweep::RunRow& row) {
   return std::ranges::all_of(sweep::columns(), [&](const sweep::Column& other) {
     return !other.parameter || !other.parameter->may_follow_from(*column.parameter) ||
@@ -64,7 +64,8 @@ bool are_followers_automatic(const sweep::Column& column, const sweep::RunRow& r
 }  // namespace
 
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) {
-  // The time step follows from a given stiffness of walls, and an automatic stiffness from the time step.
+  // Time step and wall stiffness may follow from each other: the step from a given stiffness, an automatic
+  // stiffness from the step.
   return is_automatic_with(Others::independent, column, row) ||
          (is_automatic_with(Others::all, column, row) && !are_followers_automatic(column, row));
 }

@@ -29,13 +29,12 @@ nlohmann::ordered_json step_json(const Step& step, const char* name, int num_end
           {"upper", step.interval.upper}};
 }
 inline constexpr int few_digits = 4;
-inline constexpr int all_digits = 17;  ///< enough for each number to have its own text
-/// The smallest number of digits, at least four, with which different numbers among the values have different
-/// texts.
+inline constexpr int all_digits = 17;  ///< with so many digits, different numbers have different texts
+/// The smallest number of digits, at least four, with which different values have different texts.
 int distinct_digits(const std::vector<sweep::Value>& values);
-/// Text for a printed table, with this number of significant digits; `-` for an unset value. Escapes control
+/// Text for a printed table, with `digits` significant digits; `-` for an unset value. Escapes control
 /// characters, which the words of a foreign file may contain.
-/// @param digits  from all_digits on, those that identify the number
+/// @param digits  from all_digits on, the text has as many digits as identify the number
 std::string short_text(const sweep::Value& value, int digits = few_digits);
 /// The distinct_digits() of a value of all groups. @param value_of  the group's value
 template <class ValueOf>

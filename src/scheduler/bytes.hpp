@@ -10,7 +10,7 @@
 
 namespace clog::scheduler {
 
-/// A message that is no report: a plain value and a snapshot, which may be empty.
+/// A message that is not a report: a plain value and a snapshot, which may be empty.
 template <class T>
 std::vector<std::byte> to_bytes(const T& value, std::span<const std::byte> snapshot) {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -19,18 +19,19 @@ namespace {
 /// Variables in which launchers give a process its rank.
 constexpr const char* rank_variables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 
-/// Tells Open MPI that a rank without a launcher is a single rank. Otherwise Open MPI would start a daemon,
-/// which looks for ssh, and the rank would end when the daemon is killed. Open MPI would also use a folder
-/// that all single ranks of a user share. A rank that starts while another rank ends might then fail.
+/// Sets variables by which Open MPI treats a rank without a launcher as a single rank. Otherwise Open MPI
+/// would start a daemon, which looks for ssh, and the rank would end when somebody kills the daemon. Open MPI
+/// would also use a folder that all single ranks of a user share. A rank that starts while another rank ends
+/// might then fail.
 void stand_alone_without_launcher() {
   for (const char* name : rank_variables)
     if (std::getenv(name)) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
-  setenv("HOME", "/", 0);  // Open MPI 5 does not start without it; it looks for settings there
+  setenv("HOME", "/", 0);  // Open MPI 5 looks for settings in HOME, and does not start without it
 }
 
-/// The length of a message as MPI takes it.
+/// The length of a message, converted to the type that MPI expects.
 int count_of(std::size_t num_bytes) {
   constexpr int most = std::numeric_limits<int>::max();
   if (num_bytes > std::size_t{most})
@@ -45,7 +46,7 @@ int count_of(std::size_t num_bytes) {
 
 Communicator::Communicator(int& argc, char**& argv) {
   stand_alone_without_launcher();
-  int provided = 0;  // another thread publishes the table; only this thread calls MPI
+  int provided = 0;  // not used: another thread publishes the table, but only this thread calls MPI
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);

@@ -21,7 +21,7 @@ namespace clog::scheduler {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// Rank 0's message to the others after a round.
+/// Rank 0's message to the other ranks after a round.
 enum class AfterRound { over, another };
 
 results::Progress::Screen screen(Log::Level level) {
@@ -97,7 +97,8 @@ class Driver {
     return start;
   }
 
-  /// Stores a report without the reason for a restart. That reason goes to the log (see sweep::Job::row()).
+  /// Stores a report, but without the reason for a restart, which is only printed in the log (see
+  /// sweep::Job::row()).
   void store(sweep::Report& report) {
     sweep::RunRow& row = report.row;
     if (row.status != RunStatus::failed && !row.message.empty()) {
@@ -112,8 +113,8 @@ class Driver {
 
   void end(sweep::Report report) {
     state_.rank_is_free();
-    // If a resumed task is stopped before its first report, its state is still that of the stored snapshot
-    // and row.
+    // If a resumed task is stopped before its first report, the stored snapshot and row still describe its
+    // state.
     if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = state_.row(report.row.task);
       report.row.status = RunStatus::interrupted;
@@ -138,7 +139,8 @@ class Driver {
   }
 };
 
-/// Requests the next round from the state of the sweep, if the rule needs one. Returns whether it does.
+/// Requests the tasks of the next round from the state of the sweep. Returns false if the rule needs no
+/// further round.
 bool begin_round(results::SeedRule& rule, results::SweepState& state) {
   std::vector<std::int64_t> next = rule.next_round([&](std::int64_t task) { return state.row(task).status; });
   // An earlier call with a higher precision may have started more tasks than this call needs. These tasks are

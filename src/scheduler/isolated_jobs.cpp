@@ -43,7 +43,7 @@ enum Kind : std::int64_t {
   drop,               // rank -> process: drop the job (empty)
 };
 
-/// Timeout for answers. A process answers at once, unless somebody has stopped it.
+/// Timeout for answers. A process answers at once, unless it has been suspended.
 constexpr std::chrono::milliseconds answer_timeout{2000};
 /// Timeout for the start of a process. A start takes long if memory is scarce.
 constexpr std::chrono::milliseconds start_timeout{20'000};
@@ -75,8 +75,8 @@ std::string describe(const Ending& ending) {
                      signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
-/// Makes this process end with its parent. It then ignores the signals that stop a sweep, because the rank
-/// handles them.
+/// Makes this process end when its parent ends. Also lets it ignore the signals that stop a sweep, because
+/// the rank handles these signals.
 void depend_on_parent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // the parent ended before the call
@@ -84,13 +84,13 @@ void depend_on_parent(pid_t parent) {
 }
 
 /// Libraries of MPI, such as UCX, install handlers for crashes when they are loaded. Such a handler may wait
-/// for ever. After this call, a crash ends every forked process.
+/// for ever. After this call, a crash ends the process; the same holds for processes that it forks.
 void let_crashes_kill() {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) std::signal(signal, SIG_DFL);
 }
 
-/// If memory runs out, the kernel should kill this process rather than the helper or the rank: without these
-/// two, the sweep ends.
+/// If memory runs out, the kernel should kill this process rather than the helper or the rank, because the
+/// sweep cannot continue without these two.
 void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
 /// Main function of a computing process. An uncaught exception is a crash like any other.
@@ -99,8 +99,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
   std::int64_t number = 0;
   bool is_over = true;
   while (true) {
-    // There is at least one slice between two messages. So a task that is stopped at once still has a
-    // snapshot.
+    // The process computes at least one slice between two messages, so that a task that is stopped at once
+    // still has a snapshot.
     while (!is_over) {
       is_over = job->advance();
       if (is_over) rank.send(over, number, sweep::to_bytes({job->row(), {}}));
@@ -134,7 +134,7 @@ JobFactory described_jobs(const IsolatedJobs::Describe& describe, const std::str
   }
 }
 
-/// Main function of the helper: forks one process after the other. The rank makes a socket for each of them.
+/// Main function of the helper: forks one process after the other. The rank makes a socket for each process.
 [[noreturn]] void start_processes(const Socket& rank, const IsolatedJobs::Describe& describe) noexcept {
   const auto description = rank.receive();
   if (!description) _exit(0);
@@ -156,8 +156,8 @@ JobFactory described_jobs(const IsolatedJobs::Describe& describe, const std::str
     socket.close();
     rank.send(process_began, 0, to_bytes(process, {}));
     if (process > 0) {
-      // The process stays a zombie until the rank requests the next one. So its pid is not reused, and a kill
-      // by the rank cannot hit another process.
+      // The ended process stays a zombie until the rank requests the next process. So its pid is not reused,
+      // and the rank cannot kill another process by mistake.
       siginfo_t end{};
       retried([&] { return waitid(P_PID, process, &end, WEXITED | WNOWAIT); });
       ending.code = end.si_code;
@@ -181,12 +181,12 @@ class IsolatedJobs::Processes {
     helper_.send(describe_jobs, 0, std::as_bytes(std::span(description)));
   }
 
-  /// Whether the helper is alive. Without it no job can start.
+  /// Whether the helper is alive. Without the helper, no process can start.
   bool have_helper() const { return helper_.is_open(); }
 
-  /// Starts a job in a live process, or detects that the helper is dead. Returns the job's number.
+  /// Starts a job in a process that is alive, or detects that the helper is dead. Returns the job's number.
   std::int64_t begin_job(std::int64_t task, std::span<const std::byte> snapshot) {
-    // Drains messages of an earlier job, and detects whether the process has ended since.
+    // Discards messages of an earlier job, and detects whether the process has ended since then.
     while (process_.is_open() && process_.wait(std::chrono::milliseconds(0)))
       if (!process_.receive()) bury();
     ++last_job_;
@@ -199,7 +199,7 @@ class IsolatedJobs::Processes {
   const Socket& process() const { return process_; }
 
   /// Kills the process, if it is still alive. Returns how the process ended. Returns nullopt if the helper,
-  /// which reports this, has ended or been stopped; the rank then stops using the helper.
+  /// which reports the end, has itself ended or hangs; the rank then no longer uses the helper.
   std::optional<Ending> bury() {
     process_.close();
     if (process_id_ > 0)
@@ -217,8 +217,8 @@ class IsolatedJobs::Processes {
   pid_t process_id_ = -1;
   std::int64_t last_job_ = 0;
 
-  /// After the helper's reply, only the new process holds the other end of its socket. So the rank detects
-  /// the end of this process.
+  /// Asks the helper for a new process. After the helper's reply, only the new process holds the other end of
+  /// the socket, so the rank can detect the end of this process.
   void start_process() {
     auto [mine, theirs] = Socket::pair();
     mine.limit_halts(answer_timeout);

@@ -16,7 +16,7 @@ namespace {
 
 std::string who(const sweep::RunRow& row) { return fmt::format("task {} rank {}: ", row.task, row.rank); }
 
-/// Text with the parameters that most sweeps vary.
+/// Names a run by the parameters that most sweeps vary.
 std::string what(const sweep::RunRow& row) {
   const RunParameters& run = row.parameters;
   const bool is_polygon = run.model == Model::dp;

@@ -28,7 +28,7 @@ std::optional<MachineTrust::Suspect> MachineTrust::suspect(const std::string& na
     --num_in_service_;
     return found;
   }
-  // If no machine succeeds with any task, all tasks seem to fail on all machines.
+  // Without a trusted machine, no machine is suspect, because all tasks seem to fail on all machines.
   const auto is_trustworthy = [this](const auto& other) { return is_trusted(other.second); };
   if (may_work(machine) || (has_let_go_ && std::ranges::none_of(machines_, is_trustworthy)))
     return std::nullopt;
@@ -60,7 +60,7 @@ std::optional<MachineTrust::Suspect> MachineTrust::failed(std::int64_t task, int
   }
   failed_on_[task].insert(name);
   if (!is_own_fault) here.failures.insert(task);
-  // Tasks that ran on the machine when it was set aside may fail later.
+  // The machine was set aside earlier, but tasks that were still running on it may fail later.
   if (!here.in_service) return Suspect{name, message, false, {task}};
   return suspect(name);
 }

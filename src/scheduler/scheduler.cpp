@@ -30,7 +30,7 @@ enum Tag : int {
 };
 constexpr std::int64_t no_more_tasks = -1;
 
-/// Sleeps a little longer each time nothing has happened.
+/// Sleeps a little longer each time, as long as nothing happens.
 class Backoff {
  public:
   void sleep() {
@@ -130,7 +130,7 @@ class Master {
   int num_dismissed_ = 0;
   std::set<int> waiting_;                              // workers that wait for a task
   std::unordered_map<std::int64_t, Running> running_;  // running tasks, by task
-  std::unordered_set<std::int64_t> withdrawn_;         // tasks that are withdrawn until they begin again
+  std::unordered_set<std::int64_t> withdrawn_;  // tasks whose failure is withdrawn, until they begin again
   std::optional<Work> own_job_;
   Clock::time_point last_idle_ = Clock::now();
 
@@ -139,8 +139,8 @@ class Master {
     return running_.empty() && (stopping_ || !has_tasks() || schedule_.trust.num_in_service() == 0);
   }
 
-  /// Whether tasks remain that no machine can take, because every machine is on hold or waits for one on
-  /// hold.
+  /// Whether tasks remain that no machine can take, because every machine is on hold or waits for a machine
+  /// on hold.
   bool nobody_can_work() const {
     const bool all_wait = static_cast<int>(waiting_.size()) + num_dismissed_ == ranks_.size() - 1;
     return running_.empty() && all_wait && !is_over();
@@ -153,7 +153,7 @@ class Master {
     std::int64_t task = no_more_tasks;
     std::vector<std::byte> snapshot;
   };
-  /// The next task for this rank, if there is one now.
+  /// The next task for this rank; nullopt if there is none at present.
   std::optional<Beginning> take_task(int rank) {
     if (stopping_ || !schedule_.trust.may_work(rank)) return std::nullopt;
     auto failed = std::find_if(failed_tasks_.begin(), failed_tasks_.end(),
@@ -202,13 +202,13 @@ class Master {
 
   void withdraw_failure(std::int64_t task, const std::string& machine) {
     if (running_.contains(task) || !withdrawn_.insert(task).second)
-      return;  // another machine tries the task, either now or later
+      return;  // another machine will try the task
     if (std::find(failed_tasks_.begin(), failed_tasks_.end(), task) == failed_tasks_.end())
       failed_tasks_.push_back(task);
     events_.failure_withdrawn(task, machine);
   }
 
-  /// Receives all waiting messages. Returns whether there was any.
+  /// Receives all waiting messages. Returns whether a message was waiting.
   bool serve() {
     bool served = false;
     while (const auto envelope = ranks_.probe(Communicator::any, Communicator::any)) {
@@ -297,7 +297,7 @@ class Worker {
       }
       send(ended, work.last_report());
     }
-    take_stop();  // drains a stop that was sent before our last report arrived
+    take_stop();  // discards a stop that rank 0 sent before our last report arrived
   }
 
  private:
@@ -342,8 +342,8 @@ SweepEnd run_tasks(const Communicator& ranks, Schedule& schedule, const JobFacto
     end = Master(ranks, schedule, make_job, events, report_interval).run();
   else
     Worker(ranks, make_job, report_interval).run();
-  // Workers that finish early wait here. A message of the next round must not reach this round's master, and
-  // waiting in MPI_Finalize would spin.
+  // Workers that finish early wait here, so that messages of the next round cannot reach the master of this
+  // round. (Workers that waited in MPI_Finalize would spin.)
   ranks.wait_for_all();
   return end;
 }

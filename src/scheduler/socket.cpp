@@ -18,7 +18,7 @@ struct Header {
   std::uint64_t num_bytes;
 };
 
-/// A message of one byte, which must accompany a socket that is sent, and room for the socket.
+/// A message of one byte, and room for a socket. (A socket can be sent only together with a byte.)
 struct Parcel {
   char byte = 0;
   iovec content{&byte, 1};
@@ -51,7 +51,7 @@ void Socket::limit_halts(std::chrono::milliseconds longest) const {
 bool Socket::write_all(const void* bytes, std::size_t num_bytes) const {
   const char* next = static_cast<const char*>(bytes);
   while (num_bytes > 0) {
-    // MSG_NOSIGNAL: the end of the other process must not kill this one.
+    // MSG_NOSIGNAL: the end of the other process must not kill this process.
     const ssize_t sent = retried([&] { return ::send(descriptor_, next, num_bytes, MSG_NOSIGNAL); });
     if (sent <= 0) return false;
     next += sent;
@@ -73,11 +73,13 @@ bool Socket::read_all(void* bytes, std::size_t num_bytes) const {
 
 void Socket::send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const {
   const Header header{kind, job, bytes.size()};
-  // The message is sent in one piece. A sender that is stopped between two pieces would leave half a message.
+  // The message is sent in one piece, because a sender that is suspended between two pieces would leave half
+  // a message.
   std::vector<std::byte> message(sizeof header + bytes.size());
   std::memcpy(message.data(), &header, sizeof header);
   std::ranges::copy(bytes, message.begin() + sizeof header);
-  // After half a message the receiver could not parse the next one, so the connection is closed.
+  // If only half of the message was sent, the receiver could not parse the next message, so the connection is
+  // closed.
   if (!write_all(message.data(), message.size())) ::shutdown(descriptor_, SHUT_RDWR);
 }
 

@@ -28,8 +28,8 @@ class Socket {
     std::vector<std::byte> bytes;
   };
   bool is_open() const { return descriptor_.is_open(); }
-  /// Sets a timeout for messages in either direction that have begun. If such a message halts for this long,
-  /// the other process counts as ended. (It may only have been stopped.)
+  /// Sets a timeout for messages in either direction that have begun. If the transfer of a message halts for
+  /// this long, the other process counts as ended, although it may only be suspended.
   void limit_halts(std::chrono::milliseconds longest) const;
   void close() { descriptor_ = Descriptor(); }
   /// Sends a message. If the other process has ended, the message is lost.
@@ -37,7 +37,7 @@ class Socket {
   /// Waits for a message, without a timeout unless limit_halts() was called. Returns nullopt if the other
   /// process has ended.
   std::optional<Message> receive() const;
-  /// Waits for a message or for the end of the connection. Returns whether one of them is there.
+  /// Waits for a message or for the end of the connection. Returns false after the timeout `longest`.
   bool wait(std::chrono::milliseconds longest) const;
 
   /// Sends one end of another connection to the other process (SCM_RIGHTS).

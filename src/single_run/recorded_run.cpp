@@ -21,10 +21,10 @@
 namespace clog::single_run {
 namespace {
 
-/// The distance from a droplet up to which a film shows obstacles [sigma].
+/// A film shows obstacles up to this distance from the droplet [sigma].
 constexpr double surroundings = 5 * units::droplet_diameter;
 
-/// Obstacles, periodic images included, near the polygons. Excludes tips of wedges.
+/// Obstacles near the polygons, including periodic images, but without the tips of wedges.
 std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& frames,
                                       const ObstacleArray& array) {
   constexpr double inf = std::numeric_limits<double>::infinity();

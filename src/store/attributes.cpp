@@ -15,8 +15,8 @@
 namespace clog::store {
 namespace {
 
-/// Name of the attribute that lists the checksums. It has one line, with checksum and name, for the table and
-/// for every other attribute.
+/// Name of the attribute that lists the checksums. It has a line for the table and for every other attribute,
+/// with checksum and name.
 constexpr const char* list_name = "checksums";
 
 std::string line_of(const NamedCheckSum& one) { return fmt::format("{:08x} {}\n", one.second, one.first); }

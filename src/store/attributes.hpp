@@ -11,8 +11,8 @@
 
 #include "clog/store/run_table.hpp"
 
-/// Attributes of a file's root. One of them has the checksums of all others, and of the table. A text that is
-/// too long for one attribute is stored in several attributes.
+/// Attributes of a file's root. One attribute contains the checksums of all other attributes and of the
+/// table. A text that is too long for one attribute is stored in several attributes.
 namespace clog::store {
 
 using NamedCheckSum = std::pair<std::string, std::uint32_t>;
@@ -20,7 +20,8 @@ using NamedCheckSum = std::pair<std::string, std::uint32_t>;
 /// @param table  the list's entry about the table. @throws LibraryError
 void write_attributes(hid_t file, const NamedCheckSum& table, const Provenance& attributes);
 
-/// An attribute's text. If the text is damaged, it is the candidate that matches its checksum.
+/// An attribute's text. If the stored text is damaged, the function returns the candidate that matches the
+/// checksum.
 std::string text_as_written(hid_t file, const std::string& name,
                             std::span<const std::string_view> candidates);
 /// An attribute's text; empty if it is missing or damaged.

@@ -25,8 +25,8 @@ void write_one(hid_t group, const CircleFile& file) {
                   "centres and radii [sigma]; radius 0: half of the row's obstacle_diameter");
 }
 
-/// Reads circles. Returns nullopt if the table does not have the form that write_one() writes, or cannot be
-/// read.
+/// Reads circles. Returns nullopt if the table cannot be read, or does not have the form that write_one()
+/// writes.
 std::optional<CircleFile> read_one(hid_t group, const std::string& name) {
   const Dataset table(H5Dopen2(group, name.c_str(), H5P_DEFAULT));
   if (!table.valid()) return std::nullopt;

@@ -19,7 +19,8 @@ OutputPath draft_place(const OutputPath& place, int number) {
   return place.beside(".clogsweep-draft" + std::to_string(number));
 }
 
-/// Whether the file begins with the mark, or is shorter and has only the beginning of the mark.
+/// Whether the file begins with the mark. A file that is shorter than the mark must be a beginning of the
+/// mark.
 bool begins_with(int descriptor, std::string_view mark) {
   std::array<char, 64> bytes;
   const ssize_t size = pread(descriptor, bytes.data(), std::min(mark.size(), bytes.size()), 0);
@@ -48,8 +49,8 @@ Draft::Draft(OutputPath place, std::string_view mark) : place_(std::move(place))
     remove_if_stale(draft_, mark);
     file_ = draft_.create(mode);
     if (!file_.is_open()) continue;
-    // Another process may have found the draft before it was locked, and removed it as stale. Without locks
-    // in the file system, no process removes drafts.
+    // Before the draft was locked, another process may have taken it for a stale draft and removed it. If the
+    // file system has no locks, no process removes drafts.
     const bool is_taken = flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (!is_taken && draft_.holds(file_)) return;
   }

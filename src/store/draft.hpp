@@ -10,7 +10,8 @@
 
 #include "clog/store/output_path.hpp"
 
-/// Files that appear complete: written under a temporary name, saved to disk, then renamed.
+/// Files that become visible only when they are complete. They are written under a temporary name, saved to
+/// disk, then renamed.
 namespace clog::store {
 
 /// Removes the drafts of this path that killed processes left behind.
@@ -19,10 +20,10 @@ void remove_stale_drafts(const OutputPath& place, std::string_view mark);
 
 /// An incomplete file beside its target, under an unused name. It is locked until it is closed or unlock() is
 /// called. An unlocked draft with the mark of clogsweep is left over from a killed process; the next process
-/// that makes a draft removes it. Other files with such a name stay.
+/// that makes a draft removes it. Other files with the name of a draft stay.
 class Draft {
  public:
-  /// @param mark  see remove_stale_drafts(); written first @throws Error if no file can be made there
+  /// @param mark  see remove_stale_drafts(); written first @throws Error if no file can be made in the folder
   Draft(OutputPath place, std::string_view mark);
   Draft(Draft&&) = delete;
   /// Removes the draft, unless it has been published.
@@ -38,9 +39,9 @@ class Draft {
   /// if another process has locked them.
   void unlock();
   /// Saves the draft to disk and renames it to the target. It replaces the file with this
-  /// OutputPath::stamp(), and gets the mode, owner, group and access list of this file. Returns the stamp of
+  /// OutputPath::stamp(), and gets the mode, owner, group and access list of that file. Returns the stamp of
   /// the published file, even if somebody has replaced the file since. Returns nullopt if a file with another
-  /// stamp is there; this file stays. @throws Error
+  /// stamp is at the target; that file stays. @throws Error
   std::optional<std::string> publish(const std::string& stamp);
   /// The open file. The caller owns it after this call.
   Descriptor take_descriptor() { return std::move(file_); }

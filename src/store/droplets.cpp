@@ -99,7 +99,8 @@ std::optional<Member> member_of(const Line& line) {
 
 std::uint32_t check_sum_of(const Line& line) { return check_sum(std::as_bytes(std::span(&line, 1))); }
 
-/// All values of a dataset of this type, whose checksums are not compared; nullopt if it cannot be read.
+/// All values of a dataset of this type, without a comparison of HDF5's checksums; nullopt if the dataset
+/// cannot be read.
 template <class T>
 std::optional<std::vector<T>> read_all(hid_t file, const char* name, hid_t type) {
   const Dataset dataset(H5Lexists(file, name, H5P_DEFAULT) > 0 ? H5Dopen2(file, name, H5P_DEFAULT)

@@ -23,9 +23,9 @@ struct StoredFamily {
 /// Writes no table if there is no family. @throws LibraryError
 void write_droplets(hid_t file, std::span<const StoredFamily> families);
 
-/// Assigns the families to the rows, without droplets that are not as they were written. Appends a sentence
-/// for each of these to `damage`, or one if the table cannot be read. A family that lacks a droplet is a
-/// fault of its row (sweep::fault_of).
+/// Assigns the families to the rows, without damaged droplets. Appends a sentence to `damage` for each
+/// damaged droplet, or one sentence if the table cannot be read. A family that lacks a droplet is a fault of
+/// its row (sweep::fault_of).
 void read_droplets(hid_t file, std::vector<sweep::RunRow>& rows, std::vector<std::string>& damage);
 
 }  // namespace clog::store

@@ -49,7 +49,7 @@ void with_file_image(const std::string& path, const std::function<void(hid_t fil
   fill(file);
   const ssize_t size =
       H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 ? H5Fget_file_image(file, nullptr, 0) : ssize_t{0};
-  void* image = nullptr;  // address of the image in the library's driver, which avoids a copy
+  void* image = nullptr;  // address of the image in the library's driver; using this image avoids a copy
   if (size <= 0 || H5Fget_vfd_handle(file, access, &image) < 0) throw LibraryError("pass on the file");
   use({*static_cast<const std::byte* const*>(image), static_cast<std::size_t>(size)});
 } catch (const LibraryError& error) {

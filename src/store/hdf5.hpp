@@ -14,7 +14,7 @@
 
 #include "clog/store/output_path.hpp"
 
-/// Classes that own HDF5 identifiers, and functions for files. Only src/store includes this.
+/// Classes that own HDF5 identifiers, and functions for files. Only src/store includes this header.
 namespace clog::store {
 
 /// Owns one HDF5 identifier and closes it with the function of its kind.
@@ -45,19 +45,19 @@ using Attribute = Handle<H5Aclose>;
 using PropertyList = Handle<H5Pclose>;
 using Group = Handle<H5Gclose>;
 
-/// Call this before the first use of the library. It turns off two functions of the library: the clean-up at
-/// exit, which crashes after a failed write, and the error stack on the screen, because we print one line
-/// instead. The library locks no file, because it has all files in memory.
+/// Call this before the first use of the library. It turns off the library's clean-up at exit, which crashes
+/// after a failed write, and the printing of its error stack, because we print one line instead. The library
+/// need not lock files, because it has all files in memory.
 void prepare_library();
 
-/// Checks the memory for a file that the library reads or writes in memory, because the library may crash
-/// without this memory.
+/// Checks that there is enough memory for a file that the library reads or writes in memory, because the
+/// library may crash if memory runs out.
 /// @param purpose  as in "read sweep.h5"
-/// @param size  of the file [bytes]
-/// @throws Error if there is not enough
+/// @param size  size of the file [bytes]
+/// @throws Error if there is not enough memory
 void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = 2);
 
-/// A call of the library failed, on data in memory.
+/// Thrown when a call of the library on data in memory fails.
 class LibraryError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -77,10 +77,11 @@ std::vector<std::byte> read_file(const std::string& path);
 File open_image(std::vector<std::byte>& image, const std::string& path);
 
 Space space_of(std::initializer_list<hsize_t> shape);
-/// Chunks of this many rows. They have checksums, with which other programs detect damage.
+/// Properties of a dataset with chunks of this many rows. The chunks have checksums, with which other
+/// programs detect damage.
 PropertyList checked_chunks(hsize_t num_rows);
-/// For reading without the library's check. Our checksums identify damaged rows, so the library should return
-/// all data.
+/// Properties for reading without the library's check of checksums. Our checksums identify damaged rows, so
+/// the library should return all data.
 PropertyList without_library_check();
 /// Creates and fills a dataset; attributes can be added to the result. @throws LibraryError
 /// @param data  nullptr: the data are written later
@@ -97,11 +98,11 @@ Type text_type(std::size_t length);
 std::vector<std::string> names_in(hid_t group);
 /// Names of the attributes of an object.
 std::vector<std::string> attributes_of(hid_t object);
-/// Name of a member of a compound type; empty if there is none.
+/// Name of a member of a compound type; empty if there is no member with this index.
 std::string member_name(hid_t type, unsigned index);
 /// @throws LibraryError
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
-/// Empty if there is none, or if it is not a text of fixed length.
+/// The attribute's text. Empty if there is no such attribute, or if it is not a text of fixed length.
 std::string read_attribute(hid_t object, const std::string& name);
 
 }  // namespace clog::store

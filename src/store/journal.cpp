@@ -54,8 +54,8 @@ std::vector<std::byte> record_of(const sweep::RunRow& row, std::span<const std::
   return record;
 }
 
-/// Whether the header is complete. It is missing or incomplete if the journal's writer died at the very
-/// beginning.
+/// Whether the header is complete. The header is missing or incomplete if the writer died when it began the
+/// journal.
 bool has_header(std::span<const std::byte> bytes, const std::string& path) {
   const FileHeader header;
   const std::size_t size = std::min(bytes.size(), sizeof header);
@@ -78,7 +78,7 @@ std::optional<RecordHeader> header_at(std::span<const std::byte> bytes, std::siz
 Journal::Contents parse(std::span<const std::byte> bytes) {
   Journal::Contents contents;
   std::size_t end = std::min(sizeof(FileHeader), bytes.size());  // end of the last readable record
-  std::int64_t num_passed = 0;                                   // headers of damaged records since `end`
+  std::int64_t num_passed = 0;  // number of headers of damaged records after `end`
   for (std::size_t place = end; place < bytes.size();) {
     const std::optional<RecordHeader> header = header_at(bytes, place);
     const std::size_t begin = place + sizeof(RecordHeader);
@@ -130,7 +130,7 @@ Journal::Journal(OutputPath place, const OutputPath* table) : place_(std::move(p
     remove_stale_drafts(place_, journal_mark);
     const std::vector<std::byte> bytes = read_all(file_, place_.path());
     if (has_header(bytes, place_.path())) contents_ = parse(bytes);
-    if (bytes.empty()) begin();  // reports a full disk before hours of work
+    if (bytes.empty()) begin();  // so that a full disk is reported before hours of work
   } catch (...) {
     remove_if_empty();
     throw;
@@ -140,14 +140,14 @@ Journal::Journal(OutputPath place, const OutputPath* table) : place_(std::move(p
 Journal::~Journal() { remove_if_empty(); }
 
 void Journal::open_and_lock(const OutputPath* table) {
-  // Another process holds the lock briefly in is_open(), and the file may be removed before we lock it. So
-  // this is tried several times.
+  // Locking is tried several times, because another process may hold the lock briefly in is_open(), and the
+  // file may be removed before we lock it.
   constexpr int most_attempts = 10;
   bool is_busy = false;
   std::error_code reason;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     if (attempt > 0) usleep(20'000);
-    // A user who may not read the table may not read its journal either.
+    // A user who may not read the table must not be able to read its journal.
     file_ = place_.create(table && table->exists() ? 0600 : 0666);
     if (file_.is_open() && table) table->lend_access_to(file_);
     if (!file_.is_open()) file_ = place_.open(O_RDWR);
@@ -167,16 +167,15 @@ void Journal::open_and_lock(const OutputPath* table) {
 }
 
 /// Prepares the file for writing: writes a missing header, and cuts off an incomplete record at the end. A
-/// file with records is prepared only at the first write. So a sweep that reads the records and refuses them
-/// leaves the file unchanged.
+/// file with records is prepared only at the first write, so that a sweep that refuses the records leaves the
+/// file unchanged.
 void Journal::begin() {
   if (has_begun_) return;
   if (contents_.num_bytes < sizeof(FileHeader)) {
     write_at(file_, bytes_of(FileHeader()), 0, place_.path());
     contents_.num_bytes = sizeof(FileHeader);
     check(sync(file_), FileAction::write, place_.path());
-    place_.sync_folder();  // a failure is reported by the next publication of the table, which is in the same
-                           // folder
+    place_.sync_folder();  // the next publication of the table in this folder reports a failure
   }
   if (ftruncate(file_, static_cast<off_t>(contents_.num_bytes)) != 0)
     throw FileError(FileAction::write, place_.path(), last_error());
@@ -241,18 +240,18 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
 void Journal::prepare(std::span<const Entry* const> entries, std::uint64_t begin) {
   check_place();
   next_ = std::make_unique<Draft>(place_, journal_mark);
-  // Drafts need no lock, but this draft will be the journal, so it must be locked before it is renamed.
+  // This draft becomes the journal when it is renamed, so it must be locked before that.
   if (!try_lock(next_->descriptor(), place_.path())) refuse_replaced();
   next_->write(bytes_of(FileHeader()));
   for (const Entry* entry : entries) next_->write(record_of(entry->row, entry->snapshot));
   num_copied_ = begin;
-  constexpr std::size_t little = 4'000'000;  // replace() needs negligible time for these bytes
+  constexpr std::size_t little = 4'000'000;  // replace() copies so few bytes in negligible time
   do check(sync(next_->descriptor()), FileAction::write, place_.path());
   while (copy_additions() > little);
 }
 
-/// Returns the number of copied bytes. Excludes a record that is still being written, because a full disk
-/// would make the writer remove it again.
+/// Returns the number of copied bytes. Does not copy a record that is still being written, because the writer
+/// removes it again if the disk is full.
 std::uint64_t Journal::copy_additions() {
   constexpr std::uint64_t block = 1'000'000;
   const std::uint64_t before = num_copied_;
@@ -281,8 +280,8 @@ void Journal::replace() {
 
 std::error_code Journal::remove() {
   const std::error_code reason = is_there() ? place_.remove() : std::error_code();
-  place_.sync_folder();  // a power cut may restore the file; this is harmless, because the table contains all
-                         // its results
+  place_.sync_folder();  // a power cut may restore the removed file; this is harmless, because the table
+                         // contains all results
   close();
   return reason;
 }

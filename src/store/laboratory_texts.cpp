@@ -9,7 +9,7 @@
 namespace clog::store {
 namespace {
 
-/// Reads a text; empty if it is not a text of fixed length.
+/// Reads a text; empty if the dataset is not a text of fixed length.
 std::string read_text(hid_t group, const std::string& name) {
   const Dataset dataset(H5Dopen2(group, name.c_str(), H5P_DEFAULT));
   if (!dataset.valid()) return "";
@@ -57,7 +57,7 @@ void adopt_laboratory_of_all(SweepFile& file) {
       file.provenance, [](const auto& attribute) { return attribute.first == "laboratory"; });
   if (stored == file.provenance.end() || stored->second.find('=') == std::string::npos) return;
   std::string text = stored->second;
-  // Removes comments. In a text of one line, a comment would extend to the end of the text.
+  // Removes comments, because in a text of one line a comment would extend to the end of the text.
   for (auto hash = text.find('#'); hash != std::string::npos; hash = text.find('#'))
     text.erase(hash, std::min(text.find('\n', hash), text.size()) - hash);
   while (text.ends_with('\n')) text.pop_back();

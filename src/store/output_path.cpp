@@ -40,7 +40,7 @@ void refuse_link_of_others(const fs::path& link) {
         " (it belongs to another user, in a folder that everybody can write to); give the path itself");
 }
 
-/// The seal of a file of this size; empty if it has none or cannot be read.
+/// The seal of a file of this size; empty if the file has no seal or cannot be read.
 std::string seal_at_end(const Descriptor& file, off_t size) {
   std::string end(std::min<std::size_t>(seal_size, static_cast<std::size_t>(size)), '\0');
   const ssize_t got = pread(file, end.data(), end.size(), size - static_cast<off_t>(end.size()));
@@ -49,7 +49,7 @@ std::string seal_at_end(const Descriptor& file, off_t size) {
 
 constexpr const char* access_list = "system.posix_acl_access";
 
-/// Empty if the file has none.
+/// Empty if the file has no access list.
 std::vector<char> access_list_of(const Descriptor& file) {
   std::vector<char> list(65536);  // the kernel's limit
   const ssize_t size = fgetxattr(file, access_list, list.data(), list.size());
@@ -159,7 +159,7 @@ std::error_code OutputPath::replace(const std::string& stamp, const OutputPath& 
     }
     if (is_unsupported(reason)) return this->stamp() == stamp ? other.rename_to(*this, 0) : occupied;
     if (reason != std::errc::no_such_file_or_directory)
-      return reason;  // if no file was there, somebody has removed it; this is not an error
+      return reason;  // if the file is missing, somebody has removed it; this is not an error
   }
   const std::error_code reason = other.rename_to(*this, RENAME_NOREPLACE);
   if (!is_unsupported(reason)) return reason;

@@ -31,7 +31,7 @@ std::vector<const Column*> all_columns() {
   return all;
 }
 
-/// The columns of a stored row, in the row's order. Unknown and repeated names are ignored.
+/// The columns of a stored row, in the order of the row. Unknown and repeated names are skipped.
 std::vector<const Column*> columns_of(hid_t stored) {
   std::vector<const Column*> left = all_columns();
   std::vector<const Column*> found;

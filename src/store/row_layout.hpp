@@ -32,7 +32,7 @@ class RowLayout {
 
   static constexpr std::size_t absent = static_cast<std::size_t>(-1);
   std::vector<const sweep::Column*> columns_;  // columns of the file, in the file's order
-  std::vector<std::size_t> places_;            // place of each of sweep::columns() in a packed row, or absent
+  std::vector<std::size_t> places_;  // for each of sweep::columns(), its place in a packed row, or `absent`
   std::size_t size_ = 0;
   Type type_;
 };

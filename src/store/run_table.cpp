@@ -37,7 +37,7 @@ constexpr const char* runs_name = "runs";
 constexpr const char* sums_name = "row_checksums";
 constexpr const char* sweep_kind = "clogsweep sweep";
 constexpr hsize_t rows_per_chunk = 64;
-constexpr std::size_t rows_per_block = 1024;  // number of rows in a copy
+constexpr std::size_t rows_per_block = 1024;  // number of rows that are copied at a time
 
 using CheckSums = std::vector<std::uint32_t>;  // checksums of the rows
 
@@ -48,7 +48,7 @@ void for_each_block(std::size_t num_rows, Visit visit) {
     visit(first, std::min(rows_per_block, num_rows - first));
 }
 
-/// Rows of the table that are read or written together.
+/// Selects rows of the table that are read or written together.
 Space select_rows(hid_t table, std::size_t first, std::size_t number) {
   Space space(H5Dget_space(table));
   const hsize_t start = first, count = number;
@@ -63,8 +63,8 @@ Space growing_space(std::size_t num_rows) {
 }
 
 /// Writes the table.
-/// @param laboratories  gets the checksums of all laboratories of the rows
-/// @param families  gets those of the rows
+/// @param laboratories  receives the checksums of all laboratories of the rows
+/// @param families  receives the families of the rows
 CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& laboratories,
                       std::vector<StoredFamily>& families) {
   const RowLayout layout = RowLayout::present();
@@ -95,7 +95,7 @@ CheckSums write_table(hid_t file, const Rows& rows, std::set<std::string>& labor
 /// lack columns; this number distinguishes them.
 constexpr const char* num_columns_name = "num_columns";
 
-/// The entry in the list of checksums that is for all rows together.
+/// The entry for all rows together in the list of checksums.
 NamedCheckSum joint_check_sum(const CheckSums& sums) {
   return {fmt::format("{} rows", sums.size()), check_sum(std::as_bytes(std::span(sums)))};
 }
@@ -151,7 +151,8 @@ void require_readable_version(hid_t file, const std::string& path) {
         path, version, readable_versions.front(), readable_versions.back()));
 }
 
-/// @throws Error if an open file is not one of our sweeps, or has a version that is not read
+/// @throws Error if an open file is not a sweep of clogsweep, or has a version that this program does not
+/// read
 void require_sweep(hid_t file, const std::string& path) {
   const std::array<std::string_view, 1> kinds = {sweep_kind};
   const std::string kind = text_as_written(file, "kind", kinds);
@@ -173,7 +174,7 @@ class Damage : public std::runtime_error {
 
 std::string rows_text(std::size_t number) { return count_text(static_cast<std::int64_t>(number), "row"); }
 
-/// Length of a dataset; rejects impossible sizes. @throws Damage
+/// Length of a dataset. @throws Damage if the size is impossible
 std::size_t num_rows_of(hid_t dataset, std::size_t bytes_each) {
   const std::optional<hsize_t> number = length_of(dataset);
   if (!number) throw Damage("its table has another shape than it was given");
@@ -249,7 +250,7 @@ bool is_refused(hid_t file, const char* name) {
   return refused;
 }
 
-/// Attributes of the object that are not among the known ones. An entry is, for example, "attribute note of
+/// Adds the attributes of an object that are not in `known`. An entry is, for example, "attribute note of
 /// /runs".
 void add_attributes(hid_t object, const std::string& name, const std::set<std::string>& known,
                     std::vector<std::string>& foreign) {
@@ -257,8 +258,8 @@ void add_attributes(hid_t object, const std::string& name, const std::set<std::s
     if (!known.contains(attribute)) foreign.push_back(fmt::format("attribute {} of {}", attribute, name));
 }
 
-/// Objects and attributes that other programs have added. In the groups of circles and laboratories they
-/// count as damage instead.
+/// Objects and attributes that other programs have added. Excludes objects in the groups of circles and
+/// laboratories, which count as damage.
 std::vector<std::string> foreign_objects(hid_t file) {
   const std::set<std::string> known = {runs_name,         sums_name,     circles_name,
                                        laboratories_name, droplets_name, droplet_sums_name};
@@ -306,8 +307,8 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
                           damage.what()));
 }
 
-/// Returns the seal of the file. If the seal is not whole, first tries to read the file in a child process.
-/// If that succeeds, this process can read the file safely.
+/// Returns the seal of the file. If the seal is broken or missing, first tries to read the file in a child
+/// process. If the child process succeeds, this process can read the file safely.
 Seal try_unless_whole(std::vector<std::byte>& image, const std::string& path) {
   const Seal seal = look_at_seal(image);
   if (seal != Seal::whole) try_in_child(image, path, [&] { examine(image, seal, path); });
@@ -327,7 +328,7 @@ void try_before_mpi(const std::string& path) try {
   std::vector<std::byte> image = read_file(path);
   try_unless_whole(image, path);
 } catch (const std::exception&) {
-  // the actual read throws it again
+  // the actual read throws the error again
 }
 
 SweepFile read_sweep(const std::string& path) {
@@ -351,8 +352,8 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
-/// The command that copies the first of these objects into another file. Empty if all are attributes: HDF5
-/// has no command that copies these.
+/// The command that copies the first of these objects into another file. Empty if all of them are attributes,
+/// because HDF5 has no command that copies attributes.
 std::string copying_command(const std::string& path, const std::vector<std::string>& foreign) {
   const auto object = std::ranges::find_if(foreign, [](const auto& name) { return name.starts_with('/'); });
   if (object == foreign.end()) return "";

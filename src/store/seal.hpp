@@ -7,7 +7,7 @@
 
 namespace clog::store {
 
-/// Whether the bits of a file are those that were written.
+/// Whether the bits of a file are still as clogsweep wrote them.
 enum class Seal {
   whole,    ///< yes
   broken,   ///< no

@@ -19,7 +19,7 @@
 namespace clog::store {
 namespace {
 
-/// Limit of CPU time [s]. It is far above the time of a read; only an endless loop exceeds it.
+/// Limit of CPU time [s]. The limit is far above the time of a read, so only an endless loop exceeds it.
 rlim_t time_limit(std::size_t num_bytes) {
   constexpr std::size_t least = 10, bytes_per_second = 50'000'000;
   return least + num_bytes / bytes_per_second;
@@ -37,12 +37,12 @@ rlim_t time_limit(std::size_t num_bytes) {
   try {
     read();
   } catch (const std::exception&) {
-    // the actual read throws it again
+    // the actual read throws the error again
   }
   _exit(0);
 }
 
-/// Returns how the child process ended; empty if it did not crash.
+/// Reads the file in a child process. Returns how that process crashed; empty if it did not crash.
 std::string death_of_child(std::size_t num_bytes, const std::string& path,
                            const std::function<void()>& read) {
   const pid_t process = fork();

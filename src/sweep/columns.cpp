@@ -109,7 +109,7 @@ Value value_of(const Parameter& parameter, const RunRow& row) {
   return row.unknown_parameters.contains(&parameter) ? Value() : parameter.get(row.parameters);
 }
 
-/// An unset value means that the file is older than the parameter.
+/// Sets a parameter of a row. An unset value means that the file is older than the parameter.
 void set_parameter(const Parameter& parameter, RunRow& row, const Value& value) {
   if (!parameter.applies_to(row.parameters)) return;
   row.unknown_parameters.erase(&parameter);
@@ -141,7 +141,7 @@ Column parameter_column(const Parameter& parameter) {
           .set_unknown = [&parameter](RunRow& row) { set_parameter(parameter, row, parameter.before); }};
 }
 
-/// Every group names its model.
+/// The column of the model, which separates groups, so that every group names its model.
 Column model_column(const Parameter& model) {
   Column column = parameter_column(model);
   column.usual = [](const RunRow&) { return Value(); };
@@ -206,7 +206,8 @@ Column density_column() {
         obstacles.layout == ObstacleLayout::random && (obstacles.density.per_area || obstacles.density.share);
     return is_chosen ? outside(row.obstacle_density) : Value();
   };
-  // The default is a number per area. A share of the saturated density is another number for each gap.
+  // The default is a share of the saturated density, but the column holds a number per area, so the default
+  // depends on the gap.
   column.usual = [](const RunRow& row) -> Value {
     if (!row.parameters.obstacles.density.per_area) return outside(row.obstacle_density);
     RunParameters run = row.parameters;
@@ -216,7 +217,7 @@ Column density_column() {
   return column;
 }
 
-/// Allows any word: presets of another version may have other names.
+/// The column of the preset. It allows any word, because presets of another version may have other names.
 Column preset_column() {
   Column column = member(
       "preset", &RunRow::preset, ColumnRole::parameter, "",

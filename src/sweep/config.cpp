@@ -15,9 +15,9 @@ namespace {
 constexpr const char* point_keys_line = "point-keys";
 constexpr const char* point_line = "point";
 constexpr const char* shard_line = "shard";
-constexpr const char* usual_text = "*";  // replaces an empty text in a point; the key then has its usual text
-// The config is followed by the files of circles. Each file has a line with its name and number of circles,
-// then a line for each circle.
+constexpr const char* usual_text = "*";  // stands for an empty text in a point
+// In messages, the files of circles follow the config. For each file there is a line with its name and number
+// of circles, then a line for each circle.
 constexpr const char* file_mark = "#circles ";
 
 /// The text with escaped blanks, because blanks separate texts.

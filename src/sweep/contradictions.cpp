@@ -17,7 +17,7 @@ bool is_changed(const Settings& settings, const std::string& key) {
   return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
 }
 
-/// Whether the line of the entrance has no length, for some of the values.
+/// Whether the line of the entrance has the length 0 for some values of the keys.
 bool has_point_of_entrance(const Settings& settings) {
   RunParameters run;
   std::set<double> from;
@@ -31,7 +31,7 @@ bool has_point_of_entrance(const Settings& settings) {
   });
 }
 
-/// @throws Refusal, because two given keys exclude each other
+/// Refuses a key, because another given key excludes it. @throws Refusal
 [[noreturn]] void refuse_one_of(const Settings& settings, const std::string& key, const std::string& other) {
   throw Refusal({.key = key, .excluded = {other}}, settings.text(key),
                 fmt::format("{}={} is given as well", other, settings.text(other)), "leave one of them out");
@@ -54,8 +54,8 @@ void refuse_interface_keys(const Settings& settings) {
   if (settings.text("perimeter-stiffness") != "auto") refuse_one_of(settings, ratio, "perimeter-stiffness");
 }
 
-/// The stiffnesses and the step of a daughter are automatic, so those of the ancestor must be automatic, too.
-/// Soft disks, which need a wall-stiffness, are refused for break-up itself.
+/// The stiffnesses and the step of a daughter are automatic, so the values of the ancestor must be automatic,
+/// too. (Soft disks need a given wall-stiffness, but another check refuses break-up for them.)
 void refuse_given_stiffnesses_of_families(const Settings& settings) {
   if (settings.text("break-up") == name(BreakUp::end) || settings.text("model") == name(Model::sp)) return;
   for (const char* key : {"time-step", "wall-stiffness", "area-stiffness", "perimeter-stiffness"})

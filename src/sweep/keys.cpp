@@ -54,7 +54,7 @@ std::string replaced(std::string text, std::string_view part, std::string_view o
   return text;
 }
 
-/// Common form of all spellings of a symbol: as in TeX, in Latin letters, without the underscore.
+/// A common form for all spellings of a symbol: TeX, Latin letters, with or without the underscore.
 std::string plain_symbol(std::string text) {
   constexpr std::pair<const char*, const char*> words[] = {
       {"\\mathrm", ""}, {"\\", ""},     {"{", ""},      {"}", ""},      {"_", ""},
@@ -65,7 +65,7 @@ std::string plain_symbol(std::string text) {
   return text;
 }
 
-/// Empty if no key has this symbol.
+/// The key with this symbol; empty if no key has the symbol.
 std::string key_of_symbol(std::string_view symbol) {
   const std::string plain = plain_symbol(std::string(symbol));
   const auto lower = [](std::string text) {
@@ -74,7 +74,7 @@ std::string key_of_symbol(std::string_view symbol) {
   };
   for (const Parameter& parameter : parameter_schema())
     if (!plain.empty() && plain_symbol(parameter.symbol) == plain) return parameter.key;
-  // Capitals do not matter, except in words of one letter, which are too short for a suggestion.
+  // Upper and lower case are equal, except in words of one letter, which are too short for a suggestion.
   for (const Parameter& parameter : parameter_schema())
     if (plain.size() > 1 && lower(plain_symbol(parameter.symbol)) == lower(plain)) return parameter.key;
   return "";
@@ -116,8 +116,8 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
   std::vector<std::string> all = with_part(word, names);
   const std::string near = did_you_mean(word, names);
   std::erase(all, near);
-  // A name that only adds letters at the end of the word, such as a plural's s, precedes names that contain
-  // the word.
+  // A name that only appends letters to the word, such as the s of a plural, precedes names that contain the
+  // word.
   if (!near.empty() && (all.empty() || near.starts_with(word))) all.insert(all.begin(), near);
   if (all.size() > most_named) all.resize(most_named);
   return all;

@@ -22,19 +22,21 @@
 namespace clog::sweep {
 namespace {
 
-/// Smaller arrays are not shared: building them is faster than asking whether another process has them.
+/// Smaller arrays are not shared, because building such an array is faster than asking other processes for
+/// it.
 constexpr double fewest_shared = 1e5;
 constexpr std::chrono::milliseconds pause{5};
 constexpr std::chrono::milliseconds pause_between_looks{500};
 
-/// Upper bound of the number of obstacles, from the largest fraction of an area that discs can cover.
+/// Upper bound of the number of obstacles. It follows from the largest fraction of an area that discs can
+/// cover.
 double num_places(const ObstacleParameters& parameters) {
   const double per_side = parameters.box / (parameters.smallest_diameter() + parameters.gap);
   return parameters.boxes * per_side * per_side;
 }
 
-/// Name under which processes of this executable share the array. Other programs do not find it, because they
-/// may build or arrange arrays differently.
+/// Name under which processes of this executable share the array. Other programs use other names, because
+/// they may build or arrange arrays differently.
 std::optional<std::string> shared_name(const RunParameters& run) {
   struct stat executable;
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;
@@ -42,7 +44,7 @@ std::optional<std::string> shared_name(const RunParameters& run) {
                      executable.st_mtim.tv_nsec, array_key(run));
 }
 
-/// The header of a shared array; after it come the obstacles and the starts of the cells.
+/// The header of a shared array. The obstacles and the starts of the cells follow the header.
 struct Header {
   Period period;
   double largest_radius;
@@ -84,8 +86,8 @@ ObstacleArray ObstacleArrays::build(const RunParameters& run) {
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
-  // Building takes 0.5 to 1 microseconds for each pair of two possible places of obstacles that are within
-  // reach of each other.
+  // Building takes 0.5 to 1 microseconds for each pair of possible places of obstacles that are within reach
+  // of each other.
   constexpr double ten_builds = 10 * 1e-6;
   const double reach =
       (parameters.largest_diameter() + parameters.gap) / (parameters.smallest_diameter() + parameters.gap);
@@ -104,8 +106,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     const NameLock lock(*name);
     if (lock.state() == NameLock::State::impossible) return build(run);
     if (lock.state() == NameLock::State::held) {
-      // The lock prevents that other processes build the array. Processes that wait for the lock do not
-      // search for the array, because this would slow the builder down.
+      // The lock prevents other processes from building the array. Processes that wait for the lock do not
+      // search for the array, because searching would slow the builder down.
       if (auto memory = SharedMemory::find(*name)) {
         is_waiting_worthwhile_ = true;
         return array_over(std::move(memory));
@@ -125,7 +127,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
     std::this_thread::sleep_for(pause);
     has_waited = true;
   } while (std::chrono::steady_clock::now() < end);
-  // A builder that takes longer is stuck. Building the array here is then fastest.
+  // A builder that takes longer than longest_wait() probably hangs. This process then builds the array
+  // itself.
   is_waiting_worthwhile_ = false;
   return build(run);
 }
@@ -133,8 +136,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
   const Scene& scene = scene_of(run);
   if (scene.walls_from == WallsFrom::droplet) return std::make_shared<ObstacleArray>(scene.walls(run));
-  // In a device with side walls, the droplet's reach limits the places where the droplet may start. The start
-  // shifts the walls, so the reach is a part of the key.
+  // In a device with side walls, the droplet's reach limits the places where the droplet may start. The array
+  // is shifted according to this start, so the reach is a part of the key.
   std::string key = array_key(run);
   if (scene.walls_from == WallsFrom::circles) key += shortest(model_of(run).reach(run));
   if (key != key_) {

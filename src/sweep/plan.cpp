@@ -25,9 +25,9 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// Calls check() for one branch of the settings, and returns its result. If a list may be the reason why the
-/// check refuses a value, the message says what may have been meant.
-/// @param lists  as in hint_at_list(); @param where  beginning of the message
+/// Calls check() for one branch of the settings, and returns its result. If the check refuses a value,
+/// perhaps because of a list, the message suggests what the user may have meant.
+/// @param lists  see hint_at_list() @param where  beginning of the message
 template <class Check>
 auto checked(const Settings& branch, const Settings& lists, const std::string& where,
              const Check& check) try {
@@ -49,8 +49,8 @@ std::vector<std::uint32_t> seeds_of(const Settings& settings) {
   return seeds;
 }
 
-/// The seeds of a shard: every n-th seed. The first one differs between parameter sets, so that all shards
-/// have equal work.
+/// The seeds of a shard: every n-th seed. The first seed of the shard differs between parameter sets, so that
+/// all shards have equal work.
 std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std::size_t share,
                                    const Shard& shard) {
   const auto of = static_cast<std::size_t>(shard.of);
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std:
   return part;
 }
 
-/// Whether each parameter is possible by itself; if not, resolve() names the impossible one.
+/// Whether each parameter is possible by itself. If not, resolve() names the impossible parameter.
 bool is_each_possible(const RunParameters& run) try {
   check_each(run);
   return true;
@@ -89,11 +89,11 @@ class Plan::Builder {
 
  private:
   Plan& plan_;
-  std::unordered_map<std::string, std::int64_t> known_;  // the group of each identity of runs
-  std::unordered_map<std::string, std::int64_t> runs_;   // the same without the laboratory: the first group
-  std::vector<std::string> names_;                       // names of products, for messages; empty for lists
-  std::int64_t num_runs_ = 0;                            // number of runs of all shards
-  Seeds last_seeds_;                                     // shared by branches with the same seeds
+  std::unordered_map<std::string, std::int64_t> known_;  // groups, by identity()
+  std::unordered_map<std::string, std::int64_t> runs_;   // first groups, by identity_in_any_laboratory()
+  std::vector<std::string> names_;  // names of products, for messages; empty without points
+  std::int64_t num_runs_ = 0;       // number of runs of all shards
+  Seeds last_seeds_;                // shared by branches with the same seeds
 
   /// @param common  settings with the points
   void add_point(const Settings& branch, const Settings& common, std::int64_t point) try {
@@ -102,7 +102,7 @@ class Plan::Builder {
     throw Refusal(refusal.about(), refusal_of_point(common, static_cast<std::size_t>(point), refusal));
   }
 
-  /// @param lists  as in hint_at_list(); @param name  of the branch, for messages
+  /// @param lists  see hint_at_list() @param name  name of the branch, for messages
   void add_branch(const Settings& branch, const Settings& lists, const std::string& name) {
     const std::string where = name.empty() ? "" : name + ": ";
     checked(branch, lists, where, [&] { refuse_contradictions(branch); });
@@ -132,7 +132,7 @@ class Plan::Builder {
         own[axis] = values;
   }
 
-  /// Refuses all angles that do not fit the box, in one message; resolve() would name only the first one.
+  /// Refuses all angles that do not fit the box, in one message; resolve() would name only the first of them.
   void refuse_misfitting_angles(std::size_t product, std::int64_t num_places,
                                 const std::string& where) const {
     std::vector<std::string> angles;
@@ -156,7 +156,7 @@ class Plan::Builder {
           .between(where, "");
   }
 
-  /// The number of groups. It excludes the seeds, which are counted only to check the largest number of runs.
+  /// The number of groups in the product of the lists. Also checks that the number of runs is not too large.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);
@@ -170,7 +170,7 @@ class Plan::Builder {
   }
 
   /// Different texts may mean the same parameter set: tilts of the same lattice, or `auto` and its value.
-  /// Such sets with different seeds form one group.
+  /// Equal parameter sets with different seeds form one group.
   void add_group(RunRow run, std::size_t product, std::int64_t place) {
     run.parameters.seed = 0;
     const auto [known, is_new] = known_.emplace(identity(run), plan_.num_groups());
@@ -297,7 +297,7 @@ std::vector<std::uint32_t> Plan::seeds(std::int64_t group) const {
 }
 
 std::int64_t Plan::task_of(std::int64_t group, std::int64_t place) const {
-  // The last layer that begins with this seed or an earlier one.
+  // Finds the last layer that begins with this seed or an earlier seed.
   const auto next = std::ranges::upper_bound(layers_, place, {}, &Layer::first_seed);
   const Layer& layer = *std::prev(next);
   const auto found = std::ranges::lower_bound(layer.groups, group);

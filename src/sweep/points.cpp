@@ -14,7 +14,7 @@ namespace {
 
 std::string in_file(const Points& points) { return points.file.empty() ? "" : points.file + ": "; }
 
-/// @param place  of a point that cannot be read
+/// @param place  place of a point that cannot be read
 std::string where(const Points& points, std::size_t place) {
   if (place < points.lines.size()) return fmt::format("{} line {}: ", points.file, points.lines[place]);
   return fmt::format("{}point {}: ", in_file(points), place + 1);
@@ -57,7 +57,7 @@ Shard Shard::from(const std::string& text) {
   try {
     shard = {to_integer(text.substr(0, slash)), to_integer(text.substr(std::min(slash + 1, text.size())))};
   } catch (const Error&) {
-    // the code below refuses it
+    // the code below refuses the text
   }
   if (shard.of < 1 || shard.number < 1 || shard.number > shard.of)
     throw Error("is not a part like 2/5, the second of five");

@@ -14,7 +14,7 @@ bool contains(const std::vector<std::string>& all, const std::string& one) {
   return std::ranges::find(all, one) != all.end();
 }
 
-/// The refused key, if the point does not set it. It is then given for all points.
+/// The refused key, if it has one text for all points; nullptr if the point sets it.
 /// @param common  settings with the points
 const Key* refused_for_point(const Settings& common, std::size_t point, const Refusal::About& refused) {
   const Points& points = common.points();
@@ -40,7 +40,7 @@ std::string hint_at_list(const Settings& branch, const Settings& lists, const Re
                       : fmt::format("; it meets each value of {}", other.name)) +
              "; to pair values, see clogsweep --points";
   if (!is_list) return "";
-  constexpr std::size_t most_digits = 2;  // before a comma that may be a decimal one
+  constexpr std::size_t most_digits = 2;  // before a comma that may be a decimal comma
   const std::string& list = branch.text(key);
   const std::string meant = with_decimal_point(list);
   return meant.find('.') <= most_digits ? fmt::format("; {} are two values: did you mean {}?", list, meant)

@@ -38,8 +38,8 @@ constexpr double longest_patience = 3.2e9;
 /// Largest number of obstacles, gaps or arcs of a droplet.
 constexpr std::int64_t most_contacts = 1'000'000;
 
-/// Largest fraction of the weight that corners may hold, x^2/16. It assumes an edge as long as the droplet on
-/// an obstacle as thin as a needle.
+/// Largest fraction of the weight that corners may hold, x^2/16. The bound assumes an edge as long as the
+/// droplet, on an obstacle as thin as a needle.
 constexpr double most_mesh_hold = 1e6;
 
 /// Friction may hold droplets that have almost come to rest with slightly more than its limit.
@@ -126,7 +126,7 @@ std::string motion_fault(const RunRow& row) {
     return named("transient", row.speed.transient) + " is not within the run";
   if (is_known(row.speed.time) && !(row.speed.time > 0 && row.speed.time <= slightly_more))
     return named("travel_time", row.speed.time) + " is not within the run";
-  // An older file lacks the time over which the speed was averaged. It was at least one step.
+  // Older files do not contain the time over which the speed was averaged; it was at least one step.
   const double travel_time = is_known(row.speed.time) ? row.speed.time : time_step_of(row);
   if (is_known(row.speed.mean) && !is_number_below(row.speed.mean * travel_time, 2 * farthest))
     return named("mean_speed", row.speed.mean) + " is faster than a droplet can be";
@@ -136,7 +136,8 @@ std::string motion_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks the travel from the fixed time at which the steady speed begins. Older files lack it.
+/// Checks the travel from the fixed time at which the steady speed begins. Older files do not contain this
+/// travel.
 std::string steady_fault(const RunRow& row) {
   const auto [distance, time] = row.steady;
   if (is_known(distance) != is_known(time)) return "steady_distance, steady_time: only one is known";
@@ -159,7 +160,7 @@ std::string dwell_begin_fault(const RunRow& row, const std::string& column, doub
   return "";
 }
 
-/// @param next  the dwell that was longer than this one; the run's end if there is none
+/// @param next  the next longer dwell; the run's end if no dwell was longer
 std::string dwell_fault(const RunRow& row, const std::string& column, const Dwell& dwell, const Dwell& next) {
   if (std::string fault = dwell_begin_fault(row, column, dwell.distance, dwell.begin); !fault.empty())
     return fault;
@@ -176,7 +177,7 @@ std::string dwells_fault(const RunRow& row) {
   const bool are_known = is_known(dwells.known_from);
   if (is_known(dwells.last_distance) != are_known || is_known(dwells.last_begin) != are_known)
     return "dwells_known_from, last_dwell_at, last_dwell_from: only some are known";
-  // A run that ended before this time is too short for any recorded dwell.
+  // A run that ended before this time cannot have a recorded dwell.
   const RunParameters& run = row.parameters;
   const double first = DwellRecord::shortest * run.dwell_length / run.drag.terminal_speed;
   if (are_known &&
@@ -189,7 +190,7 @@ std::string dwells_fault(const RunRow& row) {
   for (std::size_t i = 0; i < Dwells::most; ++i) {
     const Dwell& dwell = dwells.longest[i];
     if (!is_known(dwell.length) && !is_known(dwell.distance) && !is_known(dwell.begin)) {
-      next.length = -infinity;  // the file lists fewer dwells, so a later one must be empty, too
+      next.length = -infinity;  // the file lists fewer dwells, so all later entries must be empty, too
       continue;
     }
     if (std::string fault = dwell_fault(row, dwell_column(i), dwell, next); !fault.empty()) return fault;
@@ -198,7 +199,7 @@ std::string dwells_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks the values that readers use even of a failed run.
+/// Checks the values that readers also use if the run failed.
 std::string soundness_fault(const RunRow& row) {
   if (row.failed_by && (*row.failed_by != FailedBy::none) != (row.status == RunStatus::failed))
     return named("failed_by", name(*row.failed_by)) + ", but " + named("status", name(row.status));
@@ -210,7 +211,7 @@ std::string soundness_fault(const RunRow& row) {
   return "";
 }
 
-/// Checks the shape of a droplet that has moved; the shape is unknown before.
+/// Checks the shape of a droplet that has moved. Before it moves, its shape is unknown.
 std::string shape_fault(const RunRow& row) {
   if (row.steps == 0) return "";
   if (!(row.kinetic_energy_ratio >= 0 && row.kinetic_energy_ratio < diverged_energy_ratio))
@@ -332,7 +333,7 @@ std::string family_fault(const RunRow& row) {
   std::map<std::string, const Member*> members;
   for (const Member& member : row.family)
     if (!members.emplace(member.path, &member).second) return "its droplet " + member.path + " occurs twice";
-  double area = 0;  // of the droplets that have not broken up, relative to the ancestor's
+  double area = 0;  // area of the droplets that have not broken up, relative to the ancestor's area
   for (const Member& member : row.family) {
     const std::string who = "its droplet " + (member.path.empty() ? "(ancestor)" : member.path);
     if (!(member.diameter > 0 && member.diameter <= 1) || !(member.end.time >= member.birth.time))
@@ -352,10 +353,10 @@ std::string family_fault(const RunRow& row) {
 
 /// Checks the place of release, which is known only among user-supplied circles: it must be in the array.
 ///
-/// In rows of models before the twelfth, droplets that were released a little across the border have a place
-/// a little outside. Some droplets started outside the first period of the shifted array (see the scene of
-/// user-supplied circles). Their stored place is wrong, half a period or more outside; so is their distance
-/// to the exit.
+/// Model versions before 12 stored other places. If a droplet was released a little across the border of the
+/// array, the stored place is a little outside. If a droplet started outside the first period of the shifted
+/// array (see own_circles.cpp), the stored place is wrong by half a period or more, and so is the distance to
+/// the exit.
 std::string release_fault(const RunRow& row) {
   if (!is_known(row.release[0]) && !is_known(row.release[1])) return "";
   const ObstacleParameters& obstacles = row.parameters.obstacles;
@@ -377,7 +378,7 @@ std::string release_fault(const RunRow& row) {
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) {
     if (row.message.empty()) return "failed without a reason";
-    if (!observed_distance(row)) return "";  // nothing else in this row is used, so nothing else is checked
+    if (!observed_distance(row)) return "";  // readers use no other results of this row
     for (const auto check : {duration_fault, soundness_fault, dwells_fault, contacts_fault})
       if (std::string fault = check(row); !fault.empty()) return fault;
     return "";
@@ -392,8 +393,8 @@ std::string result_fault(const RunRow& row) {
 }  // namespace
 
 double farthest_distance(const RunRow& row) {
-  // The energy at the release excludes springs along the interface, because they have no energy. The margin
-  // covers the work of these springs.
+  // The energy at the release does not include springs along the interface, because they have no energy. The
+  // margin allows for the work of these springs.
   constexpr double margin = 1.1;
   const double weight = units::droplet_mass * units::gravity;
   const RunParameters& run = row.parameters;

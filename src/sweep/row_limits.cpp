@@ -23,7 +23,7 @@
 namespace clog::sweep {
 namespace {
 
-// These limits are those of docs/explanation/trust.md.
+// docs/explanation/trust.md has the same limits.
 constexpr double largest_tension = 10;
 constexpr int fewest_vertices = 64;
 constexpr int most_vertices = 1024;
@@ -53,7 +53,7 @@ std::string untested_vertices(const DpParameters& dp) {
   return fmt::format("vertices={} (tested from {} to {})", *dp.vertices, fewest_vertices, most_vertices);
 }
 
-/// @param hold  friction or yield traction of walls
+/// @param hold  friction coefficient or yield traction of walls
 std::string untested_hold(const char* key, double hold, double most, const char* unit) {
   if (hold <= most) return "";
   return fmt::format("{}={} (tested up to {}{})", key, shortest(hold), shortest(most), unit);
@@ -66,8 +66,8 @@ std::string untested_angle(const DpParameters& dp) {
 }
 
 /// Very thin obstacles slip through the interface. The droplet then encloses them, at its release or later.
-/// This was observed with obstacles that were not thicker than the length of an edge. It is more frequent
-/// among more obstacles.
+/// This was observed with obstacles that were not thicker than the length of an edge. It becomes more
+/// frequent with the number of obstacles.
 std::string untested_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;  // diameter in units of the edge length, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
@@ -116,8 +116,8 @@ double repetition_length(const RunRow& row) {
 
 bool has_met_repetition(const RunRow& row) { return row.distance > repetition_length(row); }
 
-/// Suggests an array of this length. Wide arrays take long to make, and need no width for one droplet
-/// (docs/notes/2026-11-22-long-arrays.md).
+/// Suggests an array of this length. It may be narrow, because one droplet needs no width, and wide arrays
+/// take long to make (docs/notes/2026-11-22-long-arrays.md).
 std::string enough_boxes(double length, double box) {
   constexpr double narrow = 45, too_wide = 100;
   std::string text = fmt::format("boxes={:.4g} is long enough", std::ceil(length / box));
@@ -130,7 +130,7 @@ std::string enough_boxes(double length, double box) {
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
   double farthest = 0, shortest_length = 0,
-         most_boxes = 0;    // numbers of the set that needs most boxes
+         most_boxes = 0;    // numbers of the parameter set that needs the largest number of boxes
   bool is_of_user = false;  // whether the set's circles are user-supplied; boxes do not multiply such circles
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.group(group));
@@ -183,8 +183,8 @@ std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), joined(named), shortest(period));
 }
 
-/// Warns if the circles cover only a small part of the device. Its lengths were then probably given in other
-/// units than the circles.
+/// Warns if the circles cover only a small part of the device. The lengths of the device and the circles are
+/// then probably in different units.
 std::string small_part(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
   constexpr double small = 0.2;
   const auto [left, right] = std::ranges::minmax(circles, {}, &Obstacle::x);
@@ -197,7 +197,7 @@ std::string small_part(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), left.x, right.x, lowest.y, highest.y, along, obstacles.box);
 }
 
-/// One line for each file of circles without diameters, unless obstacle-diameter was chosen. Users easily
+/// One line for each file of circles without diameters, unless the user gave obstacle-diameter. Users easily
 /// overlook the default diameter.
 std::vector<std::string> missing_diameters(const Plan& plan) {
   std::map<std::string, std::string> lines;

@@ -34,8 +34,8 @@ RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> 
       arrays_(std::move(arrays)),
       row_(begun_row(run_parameters_, task)) {}
 
-/// Restores the run from the snapshot, if a run with these parameters can have written it. Otherwise the run
-/// restarts, with the same result. This happens, for instance, if another version has written the snapshot.
+/// Restores the run from the snapshot, if a run with these parameters can have written it. Otherwise, for
+/// instance if another version wrote the snapshot, the run restarts; the result is the same.
 FamilyRun RunJob::start() {
   const std::shared_ptr<const ObstacleArray> obstacles = arrays_->get(run_parameters_);
   if (!snapshot_.empty()) try {

@@ -57,7 +57,7 @@ RunRow begun_row(const RunParameters& run, std::int64_t task) {
 std::optional<double> observed_distance(const RunRow& row) {
   if (row.status != RunStatus::failed) return row.distance;
   if (is_known(row.sound_distance)) return row.sound_distance;
-  // Rows of model version 11 do not name the cause otherwise.
+  // In rows of model version 11, only the message gives the cause.
   const bool has_crossed = row.message.starts_with("the interface crossed itself");
   return has_crossed && is_known(row.distance) ? std::optional(row.distance) : std::nullopt;
 }

@@ -40,8 +40,8 @@ std::string unit_in_words(const Key& key) {
   return unit.empty() ? "a pure number" : "in " + unit;
 }
 
-/// Reads the list of a key, and checks that each of its values is possible in some run. @throws Error that
-/// names the key
+/// Reads the list of a key, and checks that each value is possible in some run. @throws Error that names the
+/// key
 std::vector<std::string> values_of(const Key& key, const std::string& text) {
   constexpr std::size_t longest_text = 3000;  // longest list that a config can store
   try {
@@ -136,7 +136,7 @@ Settings::Entries Settings::resolved() const {
       all[place_of_key(key)] = std::make_shared<const Entry>(Entry{text, values_of(find_key(key), text)});
   };
   for (const auto& [key, text] : preset_texts(now("preset"))) follow(key, text);
-  // The preset's ratio has no meaning for other springs, or beside a given stiffness.
+  // The preset's ratio has no meaning for other springs, or if a stiffness is given.
   const std::size_t ratio = place_of_key("perimeter-stiffness-ratio");
   if (!given_[ratio] && (now("perimeter-spring") != "rest" || now("perimeter-stiffness") != "auto"))
     all[ratio] = defaults[ratio];
@@ -202,8 +202,8 @@ std::map<std::string, std::vector<std::string>> Settings::all_values() const {
   return all;
 }
 
-/// Keys that are not given and that have different texts in different branches. If a config gave such a key
-/// one text, this text would contradict the branches.
+/// Keys that are not given and that have different texts in different branches. A config must not contain
+/// these keys, because a single text would contradict some branches.
 std::set<std::string> Settings::keys_that_follow() const {
   std::set<std::string> following;
   visit_branches([&](const Settings& branch, std::int64_t) {
@@ -212,7 +212,7 @@ std::set<std::string> Settings::keys_that_follow() const {
       if (!branch.given_[i] && !given_[i] && now[i] != entries()[i] && now[i]->text != entries()[i]->text)
         following.insert(keys()[i].name);
   });
-  // Channel keys in a stored config would set obstacle-layout, which has to follow from each branch.
+  // Channel keys in a stored config would set obstacle-layout, which must follow from each branch.
   if (following.contains(layout_key))
     for (const Key& key : keys())
       if (is_of_channel(key) && !is_given(key.name)) following.insert(key.name);

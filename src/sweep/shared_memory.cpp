@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
 
-/// Whether an array is complete, and belongs to this user. Without seals it is incomplete: the process that
-/// builds it has not finished.
+/// Whether an array is complete, and belongs to this user. An array without seals is incomplete, because the
+/// process that builds it has not finished.
 bool is_complete_and_own(int descriptor) {
   struct stat status;
   const int found = fcntl(descriptor, F_GET_SEALS);
@@ -45,9 +45,9 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// Calls visit() for files that processes of this user have open, until visit() returns true. Finds these
-/// files in /proc.
-/// @param link  target of the links in /proc that lead to such a file
+/// Calls visit() for files that processes of this user have open, until visit() returns true. The files are
+/// found in /proc.
+/// @param link  target of the links in /proc; only files with this target are visited
 void visit_open_files(const fs::path& link, const std::function<bool(const fs::path&)>& visit) {
   // An unreadable process belongs to another user, or has just ended.
   std::error_code error;
@@ -65,7 +65,8 @@ void visit_open_files(const fs::path& link, const std::function<bool(const fs::p
   }
 }
 
-/// The inode of the socket bound to an abstract address; empty if there is none, or if it is unknown.
+/// The inode of the socket that is bound to an abstract address; empty if there is no such socket, or if the
+/// inode is unknown.
 std::string inode_of(const std::string& address) {
   std::ifstream sockets("/proc/net/unix");
   for (std::string line; std::getline(sockets, line);) {
@@ -116,8 +117,8 @@ NameLock::NameLock(const std::string& name)
     : address_(fmt::format("clogsweep-{}-{}", geteuid(), std::hash<std::string>{}(name))),
       socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (!socket_.is_open()) return;
-  // An abstract address. It exists on this machine as long as the socket is open. No process ever connects to
-  // it.
+  // An abstract address, which exists on this machine as long as the socket is open. No process ever connects
+  // to the address.
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::memcpy(address.sun_path + 1, address_.data(), address_.size());

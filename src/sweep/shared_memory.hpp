@@ -10,13 +10,13 @@
 
 namespace clog::sweep {
 
-/// Memory that processes of one user on one machine share, found by its name. It is a memfd, which is sealed
-/// when it is complete. Other processes find it in /proc. So no file is made, and the memory is freed when
-/// the last process that holds it ends for any reason.
+/// Memory that processes of one user on one machine share, found by its name. The memory is a memfd, which is
+/// sealed when it is complete. Other processes find it in /proc. So there is no file to remove: the memory is
+/// freed when the last process that holds it ends, for any reason.
 class SharedMemory {
  public:
-  /// Memory that this or another process holds under the name; nullptr if there is none, or if it is not
-  /// accessible.
+  /// Memory that this or another process holds under the name; nullptr if no memory has this name, or if it
+  /// is not accessible.
   static std::shared_ptr<const SharedMemory> find(const std::string& name);
   /// Publishes consecutive pieces as one memory. Returns nullptr if the system has no memfd, or not enough
   /// memory.
@@ -31,7 +31,7 @@ class SharedMemory {
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
-  Descriptor file_;  // stays open, because others find it
+  Descriptor file_;  // stays open, so that other processes can find it
   std::span<const std::byte> bytes_;
 
   explicit SharedMemory(Descriptor file) : file_(std::move(file)) {}
@@ -48,9 +48,9 @@ class NameLock {
   explicit NameLock(const std::string& name);
 
   State state() const { return state_; }
-  /// Whether a process of another user holds the lock. Any process can take the address of a lock; the
-  /// processes that need the lock would then wait in vain. This call is slow, because it inspects all
-  /// processes of this user.
+  /// Whether a process of another user holds the lock. Processes of all users can take the lock, by accident
+  /// or on purpose; the processes that need the lock would then wait in vain. This call is slow, because it
+  /// inspects all processes of this user.
   bool is_taken_by_another_user() const;
 
  private:

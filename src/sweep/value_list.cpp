@@ -56,8 +56,8 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
     double value =
         logarithmic ? first * portable::pow(last / first, fraction) : std::lerp(first, last, fraction);
     if (i == count - 1 && count > 1) value = last;
-    // Twelve digits are enough for the values that a user would write. With more digits the file would
-    // contain 0.30000000000000004.
+    // Values are rounded to twelve digits, as a user would write them; otherwise the file would contain
+    // 0.30000000000000004.
     if (i > 0 && i < count - 1) {
       char digits[32];
       const char* const end =
@@ -89,7 +89,7 @@ std::vector<std::string> expand_range(std::string_view item, std::size_t dots) {
   return values;
 }
 
-/// Refuses other notations for one or several integers. The message names the accepted notation.
+/// Refuses other notations for integers and ranges of integers. The message names the accepted notation.
 void refuse_other_notations(std::string_view item) {
   constexpr std::string_view digits = "0123456789";
   constexpr auto none = std::string_view::npos;
@@ -147,7 +147,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   return {shortest(to_number(item))};
 }
 
-/// @param rest  the text after the number at its beginning
+/// @param rest  the text that follows the number
 [[noreturn]] void refuse_number(std::string_view text, std::string_view rest, const std::string& why) {
   constexpr std::string_view no_unit = ".+-*/0123456789:;,()=";
   rest = trimmed(rest);

@@ -1,6 +1,6 @@
 /// Measures whether a step costs more in a larger box. The same droplet follows the same path through two
 /// arrays. The first array has the period 60. The second array has the period 540, and consists of 81 copies
-/// of the first. Slices of the two runs alternate.
+/// of the first array. The program alternates between short parts of the two runs.
 
 #include <algorithm>
 #include <cstdio>
@@ -48,7 +48,8 @@ void compare(const char* name, RunParameters parameters, int num_checks) {
   parameters.clog_energy = 1e-300;
   parameters = resolve(parameters);
   const auto array = std::make_shared<ObstacleArray>(sample_obstacles(parameters.obstacles, 1));
-  // The addresses of a run's arrays change its time by some percent, so there are several runs of each kind.
+  // The time of a run depends by some percent on the addresses of its arrays in memory, so there are several
+  // runs of each kind.
   constexpr int num_twins = 6;
   RunParameters in_large = parameters;
   in_large.obstacles.box = small_box * copies;

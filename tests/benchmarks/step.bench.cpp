@@ -73,7 +73,7 @@ BENCHMARK(polygon_avx2)->Unit(benchmark::kMillisecond);
 void polygon_baseline(benchmark::State& state) { with_instruction_set(state, "baseline"); }
 BENCHMARK(polygon_baseline)->Unit(benchmark::kMillisecond);
 
-/// Each term acts on single vertices. The exception is the pressure, which couples all vertices.
+/// An interface with springs to the mean length of the edges, and with weight and drag on single vertices.
 void heavy_interface(benchmark::State& state) {
   RunParameters run =
       flowing_droplet(static_cast<int>(state.range(0)), 0.01 * static_cast<double>(state.range(1)));
@@ -139,8 +139,8 @@ BENCHMARK(elastic_polygon)
     ->Arg(30)
     ->Unit(benchmark::kMillisecond);
 
-/// The run of a droplet to a channel and through it, as in clogrun, including the computation of the work
-/// against the drag.
+/// A droplet that approaches a channel and passes it. As in clogrun, each step also computes the work against
+/// the drag.
 void polygon_in_channel(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0.01 * static_cast<double>(state.range(0)));
   run.drag.terminal_speed = 0.032;

@@ -1,7 +1,7 @@
 /// Measures the cost per vertex and step for runs of real sweeps, and the cost from release to verdict. For
 /// comparison, the program measures a bare step on the same core. The bare step consists of the two passes
-/// (kick and drift) of a step without contacts. No real step can be faster. Slices of the run and of the bare
-/// step alternate.
+/// (kick and drift) of a step without contacts. No real step can be faster. The program alternates between
+/// short parts of the run and bare steps.
 
 #include <algorithm>
 #include <cmath>
@@ -134,12 +134,12 @@ RunParameters parameters(const Task& task, std::uint32_t seed) {
 }
 
 struct Measured {
-  double per_vertex_step;  ///< [ns]
+  double per_vertex_step;  ///< Cost per vertex and step of the run [ns].
   double seconds;          ///< Duration of a run, including its array and its release.
-  double limit;            ///< Cost per vertex and step of the two passes alone [ns].
+  double limit;            ///< Cost per vertex of a bare step [ns].
 };
 
-/// Measures a few runs one after another. Slices of each run alternate with the bare step.
+/// Measures a few runs one after another.
 Measured measure(const Task& task) {
   constexpr std::uint32_t num_runs = 3;
   constexpr int checks_per_slice = 400, bare_steps = 3000;
@@ -184,7 +184,7 @@ void print(const char* name, const std::vector<Measured>& rounds) {
 
 }  // namespace
 
-/// bench_sweep [ROUNDS [WORD]]: WORD selects the tasks that have it in their names.
+/// bench_sweep [ROUNDS [WORD]]: WORD selects the tasks whose names contain this word.
 int main(int argc, char** argv) {
   const int num_rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 3;
   const std::string_view word = argc > 2 ? argv[2] : "";

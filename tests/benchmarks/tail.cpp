@@ -59,7 +59,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// A random sweep. The lengths of each group are drawn from the group's recorded lengths.
+/// The lengths of the tasks of a random sweep. For each task, one of the recorded lengths of its group is
+/// drawn.
 std::vector<double> resample(const std::vector<double>& recorded, std::int64_t num_seeds,
                              std::mt19937_64& engine) {
   const boost::random::uniform_int_distribution<std::int64_t> pick(

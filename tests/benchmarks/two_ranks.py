@@ -1,5 +1,5 @@
 """Compares the speed of two ranks with that of one rank. Both compute the same sweep, in which all runs have equal
-lengths. Their computations alternate several times.
+lengths. The program alternates several times between one rank and two ranks.
 
     two_ranks.py FOLDER_OF_PROGRAMS
 

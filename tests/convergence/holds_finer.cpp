@@ -2,8 +2,8 @@
 ///   build/release/tests/holds_finer sweep.h5 [PART PARTS]
 /// Repeats each run that clogged. Puts a vertex into the middle of each edge of the droplet at rest, removes
 /// the anchors by which walls hold the droplet, and lets the droplet move. Prints a line of CSV for each run,
-/// with the droplet's distance after 600 t0, or its certified rest. The line also has the result for the
-/// unchanged number of vertices without the anchors, because a droplet may need the anchors to stay at rest.
+/// with the droplet's distance after 600 t0, or its certified rest. A droplet may need its anchors to stay at
+/// rest. To show this, the line also has the result without anchors for the unchanged number of vertices.
 /// PART and PARTS divide the runs among processes.
 
 #include <fmt/core.h>
@@ -35,8 +35,8 @@ void finish(DropletRun& run) {
   }
 }
 
-/// The coordinates, and between two of them the middle of the edge. The middle is on the cubic through the
-/// ends of the edge and their other neighbours.
+/// Inserts the middle of each edge between its ends. The middle is on the cubic through the ends of the edge
+/// and their other neighbours.
 Eigen::ArrayXd with_middles(const Eigen::Ref<const Eigen::ArrayXd>& coarse) {
   const Eigen::Index n = coarse.size();
   Eigen::ArrayXd fine(2 * n);

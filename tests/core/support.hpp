@@ -35,7 +35,7 @@ inline RunParameters bare_parameters(int vertices = 64) {
   return run;
 }
 
-/// The same droplet in a channel, with resolved parameters.
+/// Moves the run's droplet to a channel, and resolves the parameters.
 inline RunParameters in_channel(RunParameters run, const ChannelParameters& channel) {
   run.obstacles = {};
   run.obstacles.layout = ObstacleLayout::channel;
@@ -100,7 +100,7 @@ inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
   return position;
 }
 
-/// The same contour, numbered from another vertex.
+/// Numbers the vertices of a contour anew, beginning with vertex `first`.
 inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   const Eigen::Index n = position.size() / 2;
   Eigen::ArrayXd result(position.size());

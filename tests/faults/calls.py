@@ -39,7 +39,7 @@ class Faults:
         self.sample = Sample("disks", folder)
 
     def own_options(self, *words):
-        """Those options of a command that are not keys, and whether each takes a value."""
+        """The options of a command that are not keys. For each, whether it takes a value."""
         return {name: bool(value) for name, value in OWN_OPTIONS.findall(printed(*words, "--help"))
                 if name not in self.keys}
 
@@ -162,5 +162,5 @@ def as_bytes(word):
 
 
 def is_limit(word):
-    """Whether the call could take long without this word."""
+    """Whether the word keeps a call short. Mistakes must not remove or change such words."""
     return word in (b"--dry-run", b"--print-config") or word.split(b"=")[0].decode("latin-1") in SHORT

@@ -12,7 +12,7 @@ from metadata import JOURNAL, STOPPED, Stopped
 from samples import FILE, REPORTS, VERIFY, check_complete, in_child, results, stored_rows
 from support import FAMILIES, SNAPSHOT_OF_A_DAUGHTER
 
-# Settings of other sweeps. The journals of these sweeps do not belong to this sweep.
+# Settings of other sweeps. Their journals do not belong to the tested sweep.
 FOREIGN = ["max-time=9000", "vertices=48", "box=25"]
 # Families whose runs take seconds, with snapshots of their daughters
 DAUGHTERS = [*FAMILIES[:-2], "max-time=6000", "seeds=1..2", "--report-seconds=0.1", "--output", FILE]
@@ -131,8 +131,8 @@ class Faults:
             (case.folder / FILE).write_bytes(table)
 
     def go_on(self, case):
-        """Runs the sweep's command. If the command refuses the journal, it is run again without the journal. @return
-        whether the command refused the journal"""
+        """Runs the sweep's command. If the command refuses the journal, deletes the journal and runs the command again.
+        @return whether the command refused the journal"""
         before = {path.name: path.read_bytes() for path in case.folder.iterdir()}
         outcome = run(case, "clogsweep", *self.stopped.settings, exit_codes={0, 2})
         if outcome.code != 2:

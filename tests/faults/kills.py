@@ -22,8 +22,8 @@ SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGSTOP]
 # Exit codes of a sweep if only its mpirun received this signal (docs/reference/exit-codes.md). On SIGINT mpirun itself
 # chooses the code.
 CODES_OF_MPIRUN = {signal.SIGTERM: {0, 1, 75}, signal.SIGSTOP: {0}}
-# Seconds in which processes have to end after others were lost. After that the test kills them, as a batch system
-# would.
+# If a signal ends one process, the remaining processes of the sweep must end within this time [s]. After it the test
+# kills them, as a batch system would.
 PATIENCE = 5
 
 

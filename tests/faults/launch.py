@@ -13,7 +13,7 @@ EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor",
                "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
-# In the output of a program, these words show that the program itself failed.
+# Words in the output of a program that show a bug of the program.
 SIGNS_OF_FAULTS = {
     b"Traceback (most recent call last)": "a traceback",
     b"internal fault": "an internal fault",

@@ -13,7 +13,7 @@ from samples import (FILE, REPORTS, SEAL, VERIFY, check_complete, check_readers,
 from support import SMALL
 
 JOURNAL = FILE + ".journal"
-# The first run makes a snapshot every 2^18 steps, and its first snapshot after a sixth of its time.
+# The first run makes a snapshot every 2^18 steps, which take a sixth of its time.
 STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=1e4", "seeds=1", "--output", FILE]
 # The sweep is stopped after these times. The times grow, because on a slow or busy machine the first snapshot comes
 # later.

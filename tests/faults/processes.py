@@ -8,7 +8,7 @@ import time
 
 from support import children_of
 
-# Neither limit depends on how busy the machine is.
+# The limits do not depend on how busy the machine is.
 CPU_SECONDS = 100  # Limit for all processes of a program together; a sweep with sanitizers needs about 30.
 IDLE_SECONDS = 100  # Limit on the time in which all processes wait. Waiting for a processor or a disk does not count.
 LOOK_SECONDS = 1
@@ -37,8 +37,8 @@ def kill(pids):
 
 
 def status(folder):
-    """The state of a process or thread, and its processor time including that of its ended children. For an ended
-    process these are Z and 0."""
+    """The state of a process or thread, and its processor time, which includes the time of its ended children. For an
+    ended process the state is Z and the time is 0."""
     try:
         fields = (folder / "stat").read_text().rpartition(")")[2].split()
     except (FileNotFoundError, ProcessLookupError):
@@ -58,8 +58,8 @@ def is_alive(pid):
 
 
 class Limits:
-    """Distinguishes processes that hang from processes that a busy machine slows down. Among slow processes at least
-    one always has work. Processes that hang either all wait, or use too much processor time."""
+    """Distinguishes a program that hangs from a program that a busy machine slows down. In a slow program at least one
+    process always has work. In a program that hangs, all processes wait, or some use too much processor time."""
 
     def __init__(self):
         self.idle_seconds = 0

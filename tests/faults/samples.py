@@ -172,7 +172,7 @@ def check_called_whole(case, sample, path):
 
 
 def check_resumed(case, sweep, rows):
-    """Checks the command that made the file. The command must repair the file, or refuse it and leave it unchanged.
+    """Runs the command that made the file. The command must repair the file, or refuse it and leave it unchanged.
 
     @param rows  of the undisturbed sweep
     """

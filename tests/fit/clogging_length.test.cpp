@@ -17,8 +17,9 @@ namespace clog::fit {
 namespace {
 
 TEST(CloggingLength, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
-  // The estimate is the exponential fit of R's survival package. The intervals come from SciPy: from the
-  // quantiles of chi-squared with 19 degrees of freedom, and from its root finder on the likelihood.
+  // The length comes from the exponential fit of R's survival package. The intervals come from SciPy: one
+  // from the quantiles of chi-squared with 19 degrees of freedom, the other from a root finder on the
+  // likelihood.
   const CloggingLength fit = fit_clogging_length(leukaemia_treated);
   EXPECT_EQ(fit.num_runs, 21);
   EXPECT_EQ(fit.num_clogs, 9);
@@ -115,9 +116,9 @@ TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
 }
 
 TEST(CloggingLength, IntervalsCoverTheTruthWhereRunsAreCensoredAfterSomeDistance) {
-  // In these samples a quarter to nearly all of the runs have clogged. The coverage in 20000 samples has a
-  // standard error of 0.0015. The true coverage fluctuates because the number of clogs is a whole number. The
-  // fluctuation is largest if few clogs are expected (docs/explanation/statistics.md).
+  // The fraction of runs that clog is between a quarter and nearly one. The coverage in 20000 samples has a
+  // standard error of 0.0015. The true coverage differs from the nominal one because the number of clogs is a
+  // whole number. The difference is largest if few clogs are expected (docs/explanation/statistics.md).
   std::mt19937_64 engine(2);
   std::exponential_distribution<double> distance(1);
   for (const double share : {0.25, 0.5, 0.75, 0.95}) {
@@ -171,8 +172,8 @@ TEST(LeastSquaresLength, HasNoUnit) {
 }
 
 TEST(LeastSquaresLength, IsBiasedWhereTheFitIsNot) {
-  // Runs of the same speed begin one after the other. They are observed halfway through the sweep. Some of
-  // the censored runs have covered little distance, but least squares treats them as runs that never clog.
+  // Runs of equal speed begin one after the other, and the sweep is observed while runs are in progress. Some
+  // of the censored runs have covered little distance, but least squares treats them as runs that never clog.
   std::mt19937_64 engine(4);
   std::exponential_distribution<double> distance(1);
   double of_least_squares = 0, of_likelihood = 0;
@@ -195,7 +196,7 @@ TEST(CloggingLength, RefusesAnImpossibleConfidence) {
   EXPECT_THROW(fit_clogging_length({}, 0.0), std::invalid_argument);
 }
 
-/// A sweep on some workers, observed when a given fraction of its runs is done. All droplets travel at the
+/// The fits of a sweep that is observed when a given fraction of its runs is done. All droplets travel at the
 /// same speed, and clog at exponentially distributed distances.
 struct LiveSweep {
   double of_finished = 0;  ///< Clogging length from finished runs alone, divided by the true value.

@@ -10,7 +10,8 @@ namespace clog::fit {
 namespace {
 
 TEST(Holm, IsThatOfPAdjustInR) {
-  // From p.adjust(c(0.01, 0.04, 0.03, 0.005, 0.9), "holm") in R 4.2. An unknown value counts as no test.
+  // From p.adjust(c(0.01, 0.04, 0.03, 0.005, 0.9), "holm") in R 4.2. An unknown p-value must not change the
+  // others.
   const double unknown = std::nan("");
   const std::vector<double> adjusted = holm_adjusted(std::vector{0.01, 0.04, unknown, 0.03, 0.005, 0.9});
   const std::vector<double> expected = {0.04, 0.09, unknown, 0.09, 0.025, 0.9};

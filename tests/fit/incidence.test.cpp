@@ -16,7 +16,8 @@ namespace {
 CompetingEnd by(int cause, double distance) { return {distance, cause}; }
 CompetingEnd going(double distance) { return {distance, std::nullopt}; }
 
-/// Some distances are equal: ends by the same cause, ends by different causes, and an end and a censored run.
+/// Some runs end at equal distances: by the same cause, by different causes, or one by a cause while the
+/// other is censored.
 const std::vector<CompetingEnd> twenty_runs = {by(1, 1),  by(1, 2),  by(2, 2),  going(3),  by(1, 4),
                                                by(2, 4),  going(4),  by(2, 5),  by(1, 6),  by(1, 7),
                                                going(7),  by(2, 8),  by(1, 9),  by(2, 10), by(2, 10),

@@ -13,8 +13,8 @@
 namespace clog::fit {
 namespace {
 
-/// Draws pairs of distances. Both distances of a pair follow exponential laws and have some clogs in common
-/// (Marshall and Olkin): some places hold both droplets of a pair, and other places hold only one of them.
+/// Draws pairs of distances by the law of Marshall and Olkin. Some places hold both droplets of a pair, and
+/// other places hold only one of them. Both distances of a pair follow exponential laws.
 std::vector<Pair> drawn_pairs(std::mt19937& engine, int number, double share, double ratio) {
   const double common_rate = share / std::max(1.0, ratio);
   const auto draw = [&](double rate) {
@@ -93,8 +93,8 @@ TEST(LengthRatio, IsNotKnownWithoutClogs) {
   EXPECT_FALSE(ratio.is_paired);
 }
 
-/// The fraction of sweeps with an interval that contains the true ratio, and the fraction of sweeps with
-/// paired runs.
+/// The fraction of sweeps whose interval contains the true ratio, and the fraction of sweeps whose interval
+/// comes from pairs.
 struct Coverage {
   double covered = 0, paired = 0;
 };

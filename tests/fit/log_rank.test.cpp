@@ -22,8 +22,8 @@ TEST(LogRank, IsOneForEqualSidesAndNotKnownWithoutClogs) {
   const std::vector<Observation> none = {{4, false}, {5, false}}, one = {{3, true}};
   EXPECT_TRUE(std::isnan(log_rank_p_value(none, none)));
   EXPECT_TRUE(std::isnan(log_rank_p_value({}, one)));
-  // At the only clog, one of three droplets clogs. So the expected number of clogs here is 1/3, the variance
-  // is 2/9, and chi-squared is (2/3)^2/(2/9) = 2.
+  // At the only clog, three droplets are at risk, and one of them belongs to `one`. The expected number of
+  // its clogs is 1/3, the variance is 2/9, and chi-squared is (2/3)^2/(2/9) = 2.
   EXPECT_NEAR(log_rank_p_value(one, none), std::erfc(1), 1e-12);
 }
 

@@ -18,8 +18,9 @@ TEST(Migration, IsTheRatioOfTheSums) {
 
 TEST(Migration, HasTheErrorThatEnsemblesScatterBy) {
   // There are 2000 ensembles of 20 runs. Distances are from 5 to 50, and the displacements scatter by 2 about
-  // the slope -0.3. The mean squared error of the slope must equal the mean of the squared standard errors to
-  // 5 %. This tolerance is the error of the linear approximation for 20 runs.
+  // the slope -0.3. The mean squared error of the slope must be about equal to the mean of the squared
+  // standard errors. The linear approximation has an error of 5 % for 20 runs, and the mean over 2000
+  // ensembles has a standard error of 3 %.
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> distance(5, 50);
   std::normal_distribution<double> noise(0, 2);
@@ -47,8 +48,8 @@ TEST(Migration, IsUndefinedWithoutDistance) {
 }
 
 TEST(Migration, LeavesOutRunsThatWentTooShortAWay) {
-  // These droplets only sagged by 0.04 in their release void, so the void alone caused their lateral
-  // displacement.
+  // The droplets with a distance of 0.04 did not leave their release void, so their lateral displacement
+  // comes from this void alone.
   EXPECT_TRUE(std::isnan(fit_migration(std::vector<Displacement>{{0.04, -0.007}, {0.04, -0.007}}).slope));
   const Migration fit = fit_migration(std::vector<Displacement>{{4, 1}, {0.04, -0.4}, {8, 5}, {-0.1, 0.3}});
   EXPECT_DOUBLE_EQ(fit.slope, 0.5);

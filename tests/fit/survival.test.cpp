@@ -145,7 +145,8 @@ TEST(Exponentiality, OfClogsAtOneDistanceIsTested) {
   EXPECT_NEAR(seen_beyond.shape, 3.86072191591, 1e-7);
   EXPECT_NEAR(seen_beyond.scale, 6.15275738509, 1e-7);
   EXPECT_NEAR(seen_beyond.likelihood_ratio, 16.55062399204, 1e-7);
-  // If no droplet went farther, the likelihood has no bound: Weibull's law becomes a step.
+  // If no droplet travelled farther than the clogs, the likelihood grows without bound as Weibull's law
+  // approaches a step.
   for (const double censored : {0.0, 3.0, 5.0}) {
     std::vector<Observation> step(10, {5, true});
     step.push_back({censored, false});

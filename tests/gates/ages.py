@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Checks docs/gallery/pictures.csv, which lists every picture of the handbook with its size and the model version of
-its rows. A picture of an earlier model version, or of reduced size, must wait for a sweep in
-docs/gallery/rows/queue.csv, the list of the sweeps that are still to be run; its note is then `waits`. For the other
-pictures of an earlier model version, a later note must show that the program still gives the same rows for a part of
-each picture. The note's CSV file contains these rows."""
+its rows. The list docs/gallery/rows/queue.csv has the sweeps that are still to be run. Every picture of reduced size
+must wait for one of these sweeps, and its column `note` contains `waits`. A picture of an earlier model version must
+also wait, or its column `note` must link to a note that is newer than the picture. The CSV file of this note shows that
+the present version gives the same rows for a part of the picture."""
 
 import csv
 import re

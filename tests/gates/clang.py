@@ -3,7 +3,7 @@
 sources, or in all sources.
 
 --changed selects changed sources (known.py prints since when), and for each changed header a source that includes it.
-If there are more than N sources, it selects N of them, and others at the next commit. Exit code 1: there is a
+If there are more than N sources, only N of them are checked, and others at the next commit. Exit code 1: there is a
 finding."""
 
 import argparse
@@ -25,15 +25,15 @@ FINDING = re.compile(r"^(?=[^\s:]+:\d+:\d+: (?:warning|error):)", re.MULTILINE)
 
 
 def configure():
-    """Writes to build/gates how clang++ would compile each source. Warnings of CMake count as findings."""
+    """Lets CMake write to build/gates the command that compiles each source. Warnings of CMake are errors."""
     done = subprocess.run(["cmake", "--preset", "gates"], cwd=known.ROOT, capture_output=True, text=True)
     if done.returncode != 0 or "Warning" in done.stderr:
         sys.exit(done.stdout + done.stderr + "CMake fails or warns")
 
 
 def compile_commands():
-    """The arguments that compile each source in git. A source that no target compiles is reported. Examples are an
-    exception, because a test builds them with an installation."""
+    """The arguments that compile each source in git. A source that no target compiles is an error. The examples are
+    left out, because a test compiles them with an installation."""
     sources = set(known.files("*.cpp", ":(exclude)docs/examples"))
     commands = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
@@ -47,8 +47,8 @@ def compile_commands():
 
 
 def source_of(header, sources):
-    """A source that includes this header: the source with the same name, or else the first that includes the header.
-    None if no source includes it."""
+    """A source that includes this header, if possible the source with the same name. None if no source includes the
+    header."""
     path = pathlib.PurePath(header)
     line = f'"{path.relative_to("include")}"' if path.parts[0] == "include" else f'{path.name}"'
     including = [source for source in sources if line in (known.ROOT / source).read_text()]

@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# If nothing else shows what changed, the files of this number of last commits count as changed. One push may contain so
-# many commits.
+# If no branch or variable shows what changed, all files in this number of last commits count as changed. A push rarely
+# has more commits.
 LAST_COMMITS = 10
 
 

@@ -37,7 +37,7 @@ def listed():
 
 
 def paragraphs(name):
-    """Consecutive lines of prose, joined by line feeds, with the number of their first line."""
+    """Blocks of consecutive lines of prose. Each block is one text, with the number of its first line."""
     first, lines = 0, []
     for number, line in spelling.prose(name):
         line = re.sub(r"^[\s/*<!#>\"']+", "", spelling.CODE.sub(" ", line)) if line.strip() else ""

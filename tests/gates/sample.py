@@ -36,12 +36,14 @@ def lines(name, kind):
 
 
 def sentences(name, kind):
-    """Sentences with their places. A sentence also ends at a blank line, before a list item, and at a gap between
-    comments."""
+    """Sentences with their places. A sentence also ends at a blank line, before a list item, at a gap between
+    comments, and before a comment that follows code on its line."""
     first, paragraph, before = 0, [], 0
+    source = (known.ROOT / name).read_text().splitlines()
     marks = PAGE_MARKS if name.endswith(".md") else CODE_MARKS
     for number, line in [*lines(name, kind), (None, "")]:
-        is_new = number != before + 1 or not line.strip() or re.match(r"\s*[-*] ", line)
+        is_after_code = number and re.match(r"[^/*]+//", source[number - 1].lstrip()) and name.endswith("pp")
+        is_new = number != before + 1 or not line.strip() or re.match(r"\s*[-*] ", line) or is_after_code
         if is_new and paragraph:
             whole = " ".join(" ".join(paragraph).split())
             yield from (f"{name}:{first}: {one}" for one in END.split(whole)

@@ -40,7 +40,7 @@ def layer_of(parts, layers):
 
 
 def includes(root, layers):
-    """The file, the line, the layer and the included layer of every include."""
+    """For every include: the file, the number of the line, the layer of the file, and the included layer."""
     for base in (root / "include" / "clog", root / "src"):
         for path in sorted(base.rglob("*.?pp")):
             for number, line in enumerate(path.read_text().splitlines(), 1):

@@ -1,6 +1,6 @@
-"""Checks that only --instruction-set can determine the bits of a row. So no compiled file of ours may query the
-processor. None may have indirect functions, either, because the processor at the start of a program determines their
-version.
+"""Checks that only --instruction-set can determine the bits of a row. Compiled files of ours may not query the
+processor. They may not have indirect functions, either, because the processor on which a program starts determines the
+versions of these functions.
 
     one_selector.py READELF OBJDUMP FILE...     (archives and programs)
 """

@@ -1,5 +1,6 @@
-"""Checks calls of the C library. The library has several versions of some functions, for different processors. Layers
-with numbers that get into rows must not call these functions. include/clog/core/tools/portable_math.hpp replaces them.
+"""Checks calls of the C library. The library has several versions of some functions, for different processors. The
+modules that compute numbers of a sweep's rows must not call these functions.
+include/clog/core/tools/portable_math.hpp replaces them.
 
     portable_math.py READELF ARCHIVE...
 """

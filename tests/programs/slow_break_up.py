@@ -1,5 +1,5 @@
-"""Compares the break-up length in a dilute random array with the kinetic theory of gases: a droplet meets posts at
-uniformly distributed offsets, and breaks up on those that are less than b from its path."""
+"""Compares the break-up length in a dilute random array with the kinetic theory of gases. In this theory a droplet
+meets posts at uniformly distributed offsets from its path, and breaks up if the offset is less than b."""
 
 import math
 import sys

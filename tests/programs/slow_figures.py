@@ -67,8 +67,8 @@ class Figures(test_figures.Drawn):
                 for column in ("largest_shape_parameter", "largest_shape_parameter_at", "smallest_relative_speed",
                                "largest_relative_speed"):
                     self.assertEqual(float(point[column]), row[column])
-        # After this exchange, the stored path is not the path of the sweep's row. So the run is repeated, or with
-        # --draw-only the figure is refused.
+        # After this exchange, the stored path is not the path of the sweep's row. With --draw-only the figure is
+        # refused. Without it the run is repeated.
         way = self.folder / self.PLACE / "runs" / "vertices-1.h5"
         way.with_name("vertices-0.h5").replace(way)
         self.refuse_analysis("figures", "B1", "--output", ".", "--programs", BIN, *SET, "--draw-only",

@@ -27,7 +27,7 @@ PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", 
                 for path in (ROOT / "docs" / part).glob("*.md")} - FOLLOWED)
 PROGRAMS = ("clogsweep", "clogrun", "clogfit")
 LAUNCHERS = {"mpirun": 3, "srun": 1}  # For each launcher, the number of words before the program.
-# Commands that need something that this machine may lack, so they are not run
+# These commands are not run, because they need software that this machine may lack
 NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo", "pydoc"}
 # Options and keys that make the runs of a command short, by the first words of the command
 SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [],
@@ -163,7 +163,8 @@ class Commands(Analysis):
 
 class Pictures(Analysis):
     def stored(self, path):
-        """@return the call of the program that made the rows of a picture, or nothing for pictures of `figures`"""
+        """The call of the program that made the rows of a picture. A picture of `figures` has no such call, so its
+        result is empty."""
         with Image.open(path) as picture:
             about = picture.info.get("Description", "")
         for line in about.splitlines():

@@ -6,8 +6,8 @@ import unittest
 
 from support import ProgramTest
 
-# Stiff disks in gaps of 1, as in figure 9a. The array is longer than any path. No parameter was chosen by means of
-# these seeds.
+# Stiff disks in gaps of 1, as in figure 9a. The array is longer than any path. No parameter of the programs was chosen
+# by means of the seeds in this file.
 STIFF = ["model=sp", "wall-stiffness=100", "obstacle-density=saturated", "obstacle-gap=1",
          "obstacle-diameter=0.3", "box=45", "boxes=12"]
 
@@ -33,13 +33,14 @@ class Speeds(ProgramTest):
         short, middle, long = groups
         for one, other in ((short, middle), (short, long), (middle, long)):
             self.assert_equal(one, other)
-        # The mean of the runs' own speeds is too high in short runs. So this test can detect a bias.
+        # In short runs, the mean of the speeds of single runs is known to be too high. The number of runs must suffice
+        # to detect this error.
         bias = short["relative_speed"] - long["relative_speed"]
         self.assertGreater(bias, 4 * math.hypot(short["relative_speed_error"], long["relative_speed_error"]))
 
     def test_the_fixed_start_is_late_enough(self):
-        # With ten times as many short runs, the window from 167 to 300 t0 has the speed of long runs. An effect of the
-        # release would be largest in this window. From the release on, the speed is clearly higher.
+        # Short runs measure the steady speed between 167 and 300 t0, where an effect of the release would be largest.
+        # There are ten times as many short runs as long runs. The speed from the release on is clearly higher.
         short, long = self.group(300, "20001..28000"), self.group(20000, "28001..28800")
         self.assert_equal(short, long)
         error = math.hypot(short["relative_speed_all_error"], long["relative_speed_steady_error"])

@@ -55,7 +55,7 @@ def change_columns(path, **columns):
 
 
 def fail(rows, which, distance, sound_distance, failed_by=b"crossing"):
-    """Lets rows fail. @param which  mask of the rows; the other arguments are results of these rows"""
+    """Changes rows to those of failed runs. @param which  mask of these rows; the other arguments are their results"""
     for name, value in {"status": b"failed", "failed_by": failed_by, "message": b"made to fail",
                         "clogged_by": b"none", "mechanism": b"none", "distance": distance,
                         "sound_distance": sound_distance, "lateral_displacement": distance}.items():

@@ -35,7 +35,7 @@ QUICK = [*SMALL, "max-time=60"]
 # A sweep that tests share, see shared_sweep(). Each of its two parameter sets has two droplets. Some of the droplets
 # clog.
 FEW = [*QUICK, "line-tension=1,3", "seeds=1..2"]
-# Long runs with several snapshots each, four per second.
+# Long runs. Each makes several snapshots, at a rate of four per second.
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
 FEW_LONG = [word.replace("1..6", "1") for word in SWEEP]
@@ -58,7 +58,7 @@ SNAPSHOT_OF_A_DAUGHTER = (0x636C6F6766000001).to_bytes(8, "little")
 TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
-# The folder of the sweeps that several suites read. CTest empties it before it starts the first of these suites.
+# The folder of the sweeps that several suites read. CTest empties this folder before it starts the first of the suites.
 if "CLOG_SHARED_SWEEPS" in os.environ:
     SHARED = pathlib.Path(os.environ["CLOG_SHARED_SWEEPS"])
     SHARED.mkdir(parents=True, exist_ok=True)
@@ -84,7 +84,7 @@ def shared_sweep(*arguments, program="clogsweep"):
 
 
 def undisturbed(sweep):
-    """The file of the same sweep without disturbance. The last two arguments, --output and its value, are excluded."""
+    """The file of an undisturbed sweep with these arguments, without the last two of them (--output and its value)."""
     return shared_sweep(*sweep[:-2])
 
 
@@ -147,7 +147,7 @@ class ProgramTest(unittest.TestCase):
         return name
 
     def copy_sweep(self, name, *arguments, program="clogsweep"):
-        """Copies a shared sweep to a file of the test, which may be changed. An existing file is replaced."""
+        """Copies a shared sweep to a file that the test may change. An existing file is replaced."""
         return pathlib.Path(shutil.copyfile(shared_sweep(*arguments, program=program), self.folder / name))
 
 
@@ -171,8 +171,8 @@ class SweepTest(ProgramTest):
         return process
 
     def kill_all(self, process, more=()):
-        """Kills mpirun and its ranks, which have their own process groups. @param more  ranks that may have lost their
-        mpirun"""
+        """Kills mpirun and its ranks, which have their own process groups. @param more  ranks whose mpirun may have
+        ended"""
         for pid in [*self.ranks_of(process), process.pid, *more]:
             try:
                 os.kill(pid, signal.SIGKILL)

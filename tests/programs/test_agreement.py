@@ -121,8 +121,8 @@ class Frames(unittest.TestCase):
 
     def test_hybrids_wrap_a_post_and_fill_a_gap_downstream(self):
         circle = np.radians(np.arange(0, 360, 2))
-        droplet = np.array([2 + 1.2 * np.cos(circle), 0.2 * np.sin(circle) + 0.0])  # long along the flow
-        inside = np.array([[1.0, 0.0, 0.3]])  # is inside the droplet, which would touch it all around
+        droplet = np.array([2 + 1.2 * np.cos(circle), 0.2 * np.sin(circle) + 0.0])  # The droplet is long along x.
+        inside = np.array([[1.0, 0.0, 0.3]])  # A post inside the droplet.
         gap = np.array([[2.0, 0.36, 0.3], [2.0, -0.36, 0.3]])
         ring = 0.16 * np.array([np.cos(circle), np.sin(circle)]) + [[1.0], [0.0]]
         wrapping = np.concatenate([droplet, ring], axis=1)

@@ -27,7 +27,7 @@ def frames(*rows):
 
 
 def model(tension, near_wall_drag):
-    """The passage of a droplet that is slowed down by a barrier of height 1/tension, and near h = 0 also by drag."""
+    """The passage of a droplet that drag slows down near h = 0. A term with 1/(1 + tension) also changes the speed."""
     h = np.arange(-2, 2, 0.013)
     near = np.exp(-4 * h**2)
     return Profile(h, 1 / (1 + 8 * near_wall_drag * near) + 0.3 / (1 + tension) * h * near, 1 + near * 0.1 /
@@ -48,8 +48,8 @@ def first_half(profile):
 
 
 def clogging(tension, near_wall_drag):
-    """The passage of a droplet with a smallest speed that falls to zero as the line tension reaches 1. The profile has
-    bumps that move with the line tension."""
+    """The passage of a droplet that clogs at line tensions of 1 and more. The smallest speed of the droplet falls to
+    zero when the line tension rises to 1. The profile has bumps that move with the line tension."""
     h = np.arange(-1, 1, 0.004)
     if tension >= 1:
         h = h[h <= -0.1]
@@ -75,7 +75,7 @@ class Deviations(unittest.TestCase):
         with self.assertRaisesRegex(UserError, "^2 measured frames, down to h = -0.75, are upstream of the simulated "
                                                "start at h = 0; .*start=-1.25, or delete these frames"):
             deviation(frames([-0.75, 1, 1], [-0.5, 1, 1], [0.5, 1, 1]), self.stuck)
-        # A droplet that is pushed back did not start at this place.
+        # The droplet was pushed back upstream of its start, so a frame in this part of its path is upstream, too.
         with self.assertRaisesRegex(UserError, "^1 measured frame, .*is upstream of"):
             deviation(frames([-0.5, 1, 1]), frames([0, 1, 1], [-1, 1, 1], [1, 1, 1]))
         with self.assertRaisesRegex(UserError, "in the order of time$"):
@@ -125,8 +125,8 @@ class Calibrations(unittest.TestCase):
         number = 40
         found = [search.calibrate(measured(model(0.8, 0.1), 0.02, seed), model) for seed in range(number)]
         every = calibrate.means(found)
-        # The scatter of 40 results is known to 11 %. The error of their mean is the scatter divided by the square root
-        # of 40.
+        # With 40 results, their standard deviation has an error of 11 %. The error of their mean is the standard
+        # deviation divided by the square root of 40.
         self.assertAlmostEqual(every["line_tension_deviation"] / np.mean([one.line_tension_error for one in found]),
                                1, delta=0.35)
         self.assertAlmostEqual(every["near_wall_drag_deviation"] / np.mean([one.near_wall_drag_error for one in found]),

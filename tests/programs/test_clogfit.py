@@ -19,7 +19,7 @@ sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
 from clogsweep.reading import stored  # noqa: E402
 
-# Droplets of these runs can travel a hundred diameters. So a test may give the rows any distance up to this.
+# Droplets of these runs can travel a hundred diameters, so a test may write any distance up to 100 into the rows.
 FAR = ["max-time=1", "terminal-speed=100"]
 # The distances of these ten runs follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(10) + 0.5) / 10)
@@ -96,7 +96,7 @@ class Mixtures(ProgramTest):
         gaps = ["seeds=1", "obstacle-gap=0.3,0.5"]
         self.succeed("clogsweep", *QUICK[:1], *gaps, "box=20", "max-time=1", "--output", "dp.h5")
         self.succeed("clogsweep", "model=sp", "wall-stiffness=5", *gaps, "box=30", "max-time=2", "--output", "sp.h5")
-        # No parameter that all runs have in common is unusual.
+        # No parameter that both models have differs from its default.
         self.assertTrue(self.fit("dp.h5", "sp.h5").startswith("runs with model=dp: "))
         mixture = "--mixture=obstacle-gap=0.3:1,0.5:1"
         self.refuse("clogfit", "dp.h5", "sp.h5", mixture,
@@ -107,8 +107,8 @@ class Mixtures(ProgramTest):
 
 
 class GivenKeys(ProgramTest):
-    """Numerical keys that the user has set are columns of the table, or words above it if all runs share the value,
-    even if they vary together with other keys."""
+    """Tests that each numerical key with several values is a column of the table, even if it varies together with
+    another key. A key with one value is above the table."""
 
     SETTINGS = ["box=20", "obstacle-density=saturated", "max-time=5", "seeds=1"]
 
@@ -135,7 +135,7 @@ class GivenKeys(ProgramTest):
             self.assertEqual(set(before) - {"obstacle_gap", "line_tension"},
                              set(names) - {"obstacle_gap", "line_tension"})
             self.assertLess(lengths, set(lines[0]))
-        # The same column for merged files.
+        # Merged files have the same columns in the table.
         for name, tension, stiffness in (("a.h5", 1, 0.5), ("b.h5", 2, 0.7)):
             self.succeed("clogsweep", *self.SETTINGS, f"line-tension={tension}", f"wall-stiffness={stiffness}",
                          "--output", name)
@@ -258,8 +258,8 @@ class Fit(ProgramTest):
         printed = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
         self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", printed)
         self.assertIn("groups that differ only in max-time are joined (--pool)\n", printed)
-        # With another number of boxes the same seed gives another array. So these runs do not repeat droplets, and all
-        # of them count.
+        # With another number of boxes the same seed gives another array, so no run repeats a droplet, and all runs
+        # count.
         self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
         group, = json.loads(self.succeed("clogfit", "boxes.h5", "--format", "json",
                                          "--pool=boxes,max-time").stdout)["groups"]
@@ -298,8 +298,8 @@ class Fit(ProgramTest):
     DWELLING = ["seeds=1..8", "line-tension=0.05,0.3", "max-time=400"]
 
     def longest_first(self, table):
-        """The dwells of every row with their lengths and places. The longest dwell comes first, and each of the others
-        is earlier and shorter than the one before."""
+        """The lengths and places of the dwells of every row. The longest dwell comes first. Each later entry is a
+        shorter dwell that was earlier in the run."""
         names = ["longest_dwell", *(f"earlier_dwell_{i}" for i in range(1, 8))]
         return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
 
@@ -349,12 +349,12 @@ class Fit(ProgramTest):
                 self.assertGreaterEqual(longer_way, way)
                 self.assertLessEqual(fewer_clogs, clogs)
         self.assertLess(results[0], results[-1])
-        # No run can have rested for its whole duration. So with these dwells the numbers equal those without --dwell.
+        # Runs last 400 t0, so no droplet rests longer, and these values of --dwell change nothing.
         usual = self.fit()["groups"]
         for dwell in (400, 1e9):
             self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
-        # This fit loses at most 0.05 for each droplet that was still moving, because a droplet that moves by less
-        # counts as resting.
+        # With --dwell, the distance of a droplet that was still moving ends at its last dwell. This is at most 0.05
+        # before its end, because a droplet that moves by less counts as resting.
         for (way, clogs), group in zip(results[-3], usual):
             self.assertEqual(clogs, group["clogs"])
             self.assertLess(group["total_distance"] - way, 0.05 * (group["flowing"] + 1))
@@ -399,7 +399,7 @@ class Fit(ProgramTest):
         self.assertEqual(fit["units"]["relative_speed_pooled_error"], "v_t")
         self.assertEqual(fit["units"]["clogging_length_wrapped_upper"], "sigma")
         self.assertLessEqual(set(fit["units"]), set(group))
-        self.assertNotIn("mean_speed", group)  # The table has a column of this name, in other units.
+        self.assertNotIn("mean_speed", group)  # The sweep's table has a column of this name in other units.
 
     def test_it_says_what_spoils_a_length(self):
         self.sweep("seeds=1..24", *FAR)
@@ -562,8 +562,8 @@ class Fit(ProgramTest):
         self.assertEqual([group[name] for name in ("total_distance", "clogging_length", "break_up_length")],
                          [55, 55 / 4, 55 / 4])
         self.assertTrue(group["break_up_length_lower"] < 55 / 4 < group["break_up_length_upper"])
-        # Computed by hand: at each end, the incidence grows by the P just before the end, divided by the number of runs
-        # at risk. The growth is 1/10 until the first run is censored at 5, and then 6/10 of 1/5.
+        # Computed by hand: when a run ends, the incidence grows by P/n, with the P just before the end and n runs at
+        # risk. P/n is 1/10 until a run is censored at 5. After 5, P is 6/10 and n is 5.
         broken = [(step["distance"], round(step["probability"], 12)) for step in group["incidence"]["broken"]]
         self.assertEqual(broken, [(2, 0.1), (3, 0.2), (7, 0.32), (8, 0.44)])
         clogged = [round(step["probability"], 12) for step in group["incidence"]["squeezed"]]
@@ -575,7 +575,7 @@ class Fit(ProgramTest):
         self.assertIn("lambda_b: mean distance before break-up", text)
         self.assertNotIn("w/s/h/o", text)
         # The run of a droplet that rested for long ends at the place of this rest, even if the droplet broke later.
-        # Otherwise the run ends where the droplet broke.
+        # The run of a droplet that did not rest ends where the droplet broke.
         dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5")
                   if name.startswith(("longest_dwell", "earlier_dwell"))]
         self.change(**{name: np.nan for name in dwells})
@@ -636,7 +636,8 @@ class Fit(ProgramTest):
         known = 0
         for group in self.fit()["groups"]:
             mine = rows[(rows.line_tension == group["line_tension"]) & (rows.obstacle_gap == group["obstacle_gap"])]
-            # The start is 5 sigma/V_t = 25 t0. A clogged droplet counts until its last dwell.
+            # The steady speed begins after 5 sigma/V_t = 25 t0, and ends with the run. For a clogged droplet it ends at
+            # the last dwell.
             end = mine.time.where(mine.status != "clogged", mine.last_dwell_from)
             self.assertEqual((end > 25.4).tolist(), mine.steady_time.notna().tolist())
             mine = mine[mine.steady_time.notna()]
@@ -693,7 +694,7 @@ class Fit(ProgramTest):
         self.assertRegex(text, r"failed +per 1000 sigma .*\n.* 3 +96\.0 ")
         self.assertIn("3 failed; the column `message` says why, and counted as not clogged up to sound_distance", text)
         self.succeed("clogsweep", "verify", "sweep.h5")
-        # A failed run that ended before the distance from which on runs are observed is excluded, like any other run.
+        # --from-distance excludes all runs that ended before this distance, even failed ones.
         group, = self.fit("--from-distance", 5)["groups"]
         self.assertEqual((group["runs"], group["left_out"], group["total_distance"]), (3, 4, 2 + 5 + 1.25))
 
@@ -855,8 +856,8 @@ class Fit(ProgramTest):
 
     def test_own_circles_have_a_share_along_the_rows_that_are_stated(self):
         disks = ["model=sp", "wall-stiffness=10", "max-time=1500"]
-        # These are the posts of a rhombic lattice, 8 columns of 8 posts. Each column is shifted by a quarter of the
-        # pitch.
+        # The posts form a rhombic lattice with 8 columns of 8 posts. Each column is shifted against the last by a
+        # quarter of the pitch.
         posts = [(1.5 * i + 0.1, (1.5 * (j + i / 4)) % 12) for i in range(8) for j in range(8)]
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x, y in posts))
         self.succeed("clogsweep", *disks, "obstacles=posts.csv", "box=12", "seeds=1..3",

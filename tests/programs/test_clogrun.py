@@ -355,7 +355,7 @@ class Run(ProgramTest):
                          self.succeed("clogrun", "array", *SMALL, "max-time=0.1", "--dry-run", "--output", "run.h5").stdout)
         self.assertIn("on this machine", printed)
         samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", printed).groups())
-        # The output is a config. It must give the same run.
+        # A run with the printed config must give the same result.
         self.write("told.cfg", printed)
         self.succeed("clogrun", "array", "--config", "told.cfg", "--polygon-interval", 5, "--output", "run.h5")
         with h5py.File(self.folder / "run.h5") as file:

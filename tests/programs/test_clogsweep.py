@@ -177,7 +177,7 @@ class Sweep(ProgramTest):
                          r"^# s.h5 has 6 of 60 runs; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
         of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
-        # Nothing remains for an estimate.
+        # All runs of this command are finished, so there is nothing to estimate.
         printed = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
         self.assertEqual(printed, f"# s.h5 has all 6 runs, which took {hours:.2g} core-hours; nothing is left to do")
 
@@ -247,7 +247,7 @@ class Sweep(ProgramTest):
         saturated = [*keys, "obstacle-density=saturated"]
         self.assertRegex(self.succeed("clogsweep", *saturated, "seeds=1..8", "--dry-run").stdout,
                          r"# \d of \d runs clogged within one obstacle spacing \(0.5 sigma\)")
-        # The count includes runs that are not in the lists, as in clogfit.
+        # Like clogfit, the message counts all runs of the file, even runs with seeds beyond those of the command.
         self.succeed("clogsweep", *saturated, "seeds=1..8", "--output", "s.h5")
         self.assertIn("clogged within one obstacle spacing",
                       self.succeed("clogsweep", *saturated, "seeds=1..9", "--dry-run", "--output", "s.h5").stdout)
@@ -296,7 +296,7 @@ class Sweep(ProgramTest):
                     self.assertIn(f"which took {cost['spent']:.2g} core-hours", text)
 
     def estimates(self, cost):
-        """The estimates of a dry run's cost, in the order of the text."""
+        """The parts of `cost` that contain an estimate, in the order in which the text prints them."""
         rounds = cost.get("all_rounds", {})
         return [of for of in (cost, cost.get("left"), rounds.get("if_all_clog"), rounds.get("if_few_clog")) if of and "expected" in of]
 
@@ -452,7 +452,7 @@ class Isolated(ProgramTest):
         sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
         process = self.start(*sweep)
         computing = self.computing_process(process)
-        # Waits for the first snapshot. Without a snapshot the resumed run would start at its release.
+        # The test waits for the first snapshot, because without a snapshot the resumed run would start at its release.
         self.wait_for(lambda: table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any())
         os.kill(computing, signal.SIGSTOP)
         time.sleep(0.5)  # During this time the rank requests reports.
@@ -463,7 +463,7 @@ class Isolated(ProgramTest):
         self.assertGreater(rows.distance[0], 0, "the last report counts")
         self.wait_for_end_of([computing])
         hung_at = rows.distance[0]
-        # The process stops again before its first report. So its state must be that of the stored row.
+        # The process stops again before its first report, so the row must stay as it was stored.
         process = self.start(*sweep[:2], "--report-seconds=100")
         os.kill(self.computing_process(process), signal.SIGSTOP)
         process.send_signal(signal.SIGTERM)
@@ -521,8 +521,8 @@ class Told(ProgramTest):
             pass
         os.close(ours)
         self.assertEqual(process.wait(), 0)
-        # This is the final content of the screen. A carriage return makes the following text overwrite the line, and
-        # the escape clears the rest of the line.
+        # `lines` is the final content of the screen. A carriage return makes the following text overwrite the line, and
+        # the escape sequence clears the rest of the line.
         lines = []
         for line in seen.decode().removesuffix("\r\n").split("\r\n"):
             lines.append(line.split("\r")[-1].removesuffix("\x1b[K"))

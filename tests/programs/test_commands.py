@@ -99,7 +99,8 @@ class Meant(ProgramTest):
             done = self.run_program("clogsweep", "receding-angle=140,180", f"advancing-angle={advancing}",
                                     "--output", "s.h5")
             self.assertEqual((done.returncode, done.stderr), (2, f"clogsweep: {exchange}{end}"))
-        # The refused key need not be a list itself, and the intended value is not a decimal.
+        # The message also appears if the refused key has a single value. The list 64,128 could be a decimal number, but
+        # the message must not suggest 64.128.
         self.refuse("clogsweep", "model=dp,sp", "vertices=64", "--output", "s.h5",
                     words=["invalid vertices=64",
                            "it meets each value of model; to pair values, see clogsweep --points"])
@@ -132,7 +133,7 @@ class Meant(ProgramTest):
 
 class Failing(ProgramTest):
     def test_a_sweep_whose_every_run_failed_is_no_success(self):
-        for printed in ("failed, attempt 2", "nothing left to do"):  # Both texts appear the second time, too.
+        for printed in ("failed, attempt 2", "nothing left to do"):
             done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5")
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn(printed, done.stderr)

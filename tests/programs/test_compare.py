@@ -84,7 +84,7 @@ class Compared(Analysis):
         self.write("copy.csv", "distance [mm],clogged\n7,1\n41.5,1\n120,0\n")
         one, = self.compare("own.csv", "copy.csv")["comparisons"]
         self.assertEqual((one["ratio"], one["interval"], one["ratio_lower"]), (1, "identical", None))
-        # One more run is another sweep.
+        # Two sweeps are not identical if one of them has an additional run.
         self.sweep("more.h5", "preset=robust", seeds="1..7")
         self.assertEqual({one["interval"] for one in self.compare("s.h5", "more.h5")["comparisons"]}, {"unpaired"})
 

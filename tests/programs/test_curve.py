@@ -16,7 +16,7 @@ from support import BIN, ROOT, SMALL, ProgramTest
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 
-# Droplets of these runs can travel a hundred diameters. So a test may give the rows any distance up to this.
+# Droplets of these runs can travel a hundred diameters, so a test may write any distance up to 100 into the rows.
 FAR = ["max-time=1", "terminal-speed=100", "seeds=1..6"]
 TENSIONS = [0.03, 0.1, 0.3, 1.0, 3.0]
 LENGTHS = [0.1, 1.0, 10.0, 1.0, 0.1]  # The peak is at 0.3.
@@ -183,7 +183,7 @@ class Curve(ProgramTest):
                           lengths=tensions)
         self.assertEqual([curve["shared"] for curve in self.curve("--key=line-tension")["curves"]],
                          [{"obstacle_gap": 0.3}, {"obstacle_gap": 0.4}])
-        # Densities that are equal for all gaps are not shares.
+        # If all gaps have the same densities, these are not shares of the saturated density.
         rows = self.sweep("line-tension=1", *FAR, gaps, "obstacle-density=0.1,0.2", lengths=one_length)
         self.assertEqual([curve["shared"] for curve in self.curve("--key=obstacle-gap")["curves"]],
                          [{"obstacle_density": 0.1}, {"obstacle_density": 0.2}])

@@ -208,7 +208,8 @@ class Damage(ProgramTest):
         return copy
 
     def test_verify_tells_when_only_other_readers_refuse_a_copy(self):
-        """HDF5's checksum of a chunk includes the padding. Our checksums cover only rows and attributes."""
+        """Our checksums cover only rows and attributes. The checksum that HDF5 stores for a chunk covers its padding,
+        too, so other readers refuse a copy with damaged padding."""
         copy = self.copied()
         whole = copy.read_bytes()
         with h5py.File(copy) as file:
@@ -233,8 +234,8 @@ class Damage(ProgramTest):
                 (self.folder / "whole.h5").unlink()
 
     def test_python_does_not_read_a_copy_whose_description_is_damaged(self):
-        """Our checksums cover only the bytes of rows. With other names, types or positions of columns these bytes would
-        mean other numbers."""
+        """Our checksums cover the bytes of rows, but not the names, types and positions of columns. If these are
+        damaged, the same bytes mean other numbers."""
         copy = self.copied()
         whole = copy.read_bytes()
         self.assertEqual(len(clogsweep.open(copy).rows), 6)
@@ -254,8 +255,8 @@ class Damage(ProgramTest):
         self.assertGreater(refused, 15)
 
     def test_the_check_of_a_copy_is_not_reused_for_a_changed_copy(self):
-        """The result of the check was once cached by name and time. So a changed copy with the same time counted as
-        undamaged."""
+        """The result of the check was once cached by the name and the time of the file, and a changed copy with the
+        same time counted as undamaged."""
         copy = self.copied()
         clogsweep.open(copy)
         content = copy.read_bytes()
@@ -274,8 +275,8 @@ class Damage(ProgramTest):
             clogsweep.open(run)
 
     def test_little_memory_is_no_damage_and_no_crash(self):
-        """HDF5 and Open MPI crash if memory is short. An intact file was once reported as damaged because they could
-        not load it."""
+        """HDF5 and Open MPI crash if memory is short. When HDF5 could not load an intact file, the file was once
+        reported as damaged."""
         if not may_limit_memory():
             self.skipTest("programs with sanitizers map more memory than any machine has")
         sweep = [*SETTINGS[:-1], "new.h5"]
@@ -289,8 +290,8 @@ class Damage(ProgramTest):
             for name, *arguments in [("clogfit", "s.h5"), ("clogsweep", "verify", "s.h5"), ("clogsweep", *sweep)]:
                 size = megabytes * 2**20
                 done = run_with(size, name, arguments)
-                # If the memory exceeds what loading needs by less than 150 kB, the library Highway ends the process
-                # before main().
+                # If less than 150 kB of memory are left after the libraries are loaded, one of them (Highway) ends the
+                # process before main().
                 if done.returncode == -signal.SIGABRT and run_with(size - 2**18, name, arguments).returncode == 127:
                     continue
                 with self.subTest(program=name, arguments=arguments[:1], megabytes=megabytes):
@@ -369,7 +370,7 @@ class Damage(ProgramTest):
 
     def test_a_full_disk_ends_with_exit_code_2(self):
         def limit():
-            # The program must ignore SIGXFSZ, which would otherwise end it.
+            # At this limit the system sends SIGXFSZ, which ends a program that does not ignore it.
             resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
 
         for name, *arguments in [("clogsweep", *SETTINGS[:-1], "new.h5"),

@@ -238,7 +238,7 @@ class Devices(Walls):
         for command, output in [("device", "device"), ("report", "report.html")]:
             self.draw(command, "s.h5", "--output", output, "--programs", BIN)
         self.assertTrue("2 of 2 runs finished (2 passed)" in (self.folder / "report.html").read_text())
-        # The file is merged with groups in which droplets do pass.
+        # Merged with a second sweep, the file also has groups with droplets that met posts.
         self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance",
                      "entrance-from=4.5", "entrance-to=5.5", "exit=6", "line-tension=1", "vertices=64", "max-time=500",
                      "seeds=1..2", "--output", "t.h5")
@@ -310,8 +310,8 @@ class Devices(Walls):
             self.assertEqual(groups.fitted_curve(groups.members) is not None, name == "without")
 
     def test_droplets_count_only_at_lines_downstream_of_their_release(self):
-        """The strip and the table agree with a count in the rows. Some droplets are released in voids behind the trap,
-        which is close to the entrance."""
+        """Compares the strip of the picture and the table of clogfit with a count in the rows. A trap is close to the
+        entrance, and some droplets are released in voids behind this trap."""
         posts = [(1.2, 4.0), *((3, y) for y in (3.2, 4.05, 4.9)), *((7, 0.5 + 0.85 * i) for i in range(9))]
         self.write("posts.csv", "x,y,diameter\n" + "".join(f"{x},{y:.4f},0.5\n" for x, y in posts))
         self.succeed("clogsweep", "obstacles=posts.csv", "box=8", "length=14", "side-walls=on", "release=entrance",
@@ -339,7 +339,7 @@ class Devices(Walls):
             self.assertLess(group["displaced"], 20)
             self.assertIn(f"released: 30, displaced: {group['displaced']}",
                           [text.get_text() for text in panel.get_legend().texts])
-        # Behind the exit no droplet is followed. The exit is listed once.
+        # A line behind the exit is refused. A line at the exit is printed only once.
         self.refuse("clogfit", "s.h5", "--lines", "5,12.5",
                     words=["--lines=5,12.5", "12.5 is behind the exit at x = 12"])
         for group in json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines",
@@ -388,7 +388,7 @@ class Devices(Walls):
         np.testing.assert_allclose(exported["diameter_mm [mm]"] * exported["length [sigma]"], 2.8, rtol=1e-9)
         self.assertEqual((set(exported["angle_degrees [degrees]"]), exported["distance [sigma]"].tolist()),
                          ({90}, rows["distance"].tolist()))
-        # Another device does not become a device of several sizes.
+        # The two files contain different devices, which must not be drawn as one device.
         self.write("other.csv", "# units=um droplet=200um\nx,y,diameter\n700,500,100\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "obstacles=other.csv", *keys[1:], "seeds=1", "--output", "other.h5")
         self.succeed("clogsweep", "merge", "s.h5", "other.h5", "--output", "both.h5")
@@ -503,7 +503,7 @@ class Drawings(Analysis):
         space.add_text("not a post")
         drawing.saveas(self.folder / "device.dxf")
         self.assert_posts(self.circles("device.dxf"), 1e-6)
-        # With the printed command clogsweep reads the file.
+        # clogsweep reads posts.csv.
         self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-2], "max-time=5", "seeds=1", "--output", "s.h5")
         self.assertEqual(len(table(self.folder / "s.h5")), 1)
 
@@ -521,7 +521,7 @@ class Drawings(Analysis):
         self.assert_posts(self.circles("device.gds"), 2e-3)
 
     def gdsii(self, **cells):
-        """@param cells  the polygons of each top cell"""
+        """Writes a GDSII file. @param cells  the polygons of each top cell"""
         import gdspy
 
         library = gdspy.GdsLibrary()
@@ -580,7 +580,7 @@ class Drawings(Analysis):
         import gdspy
 
         area = gdspy.Rectangle((0, 0), (3600, 1200), layer=1)
-        # A polygon with a slit to each hole, and the same cut into pieces.
+        # The area is drawn as one polygon with a slit to each hole, and as several pieces.
         for most_points in (10000, 60):
             self.gdsii(DEVICE=gdspy.boolean(area, self.rounds(), "not", max_points=most_points))
             with self.subTest(most_points=most_points):
@@ -604,8 +604,8 @@ class Drawings(Analysis):
     def test_holes_that_were_cut_into_pieces_are_counted_as_at_least(self):
         import gdspy
 
-        # There are two pieces, and their border cuts the third of five holes. With a gap between them, the pieces are
-        # not united.
+        # The area has five holes and consists of two pieces. The border between the pieces cuts the third hole. Pieces
+        # with a gap between them are not united, so this hole is then not counted.
         holes = [gdspy.Round((400 + 500 * i, 600), 50, number_of_points=64) for i in range(5)]
         for gap, number in ((1, "at least 4"), (0, "5")):
             pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (left + 1400 - gap, 1200)), holes, "not", max_points=10000)
@@ -614,7 +614,7 @@ class Drawings(Analysis):
             self.refused(words=[f"the drawing has {number} round holes", "--holes"])
         self.gdsii(DEVICE=gdspy.boolean(gdspy.Rectangle((0, 0), (2800, 1200)), holes, "not", max_points=10000))
         self.refused(words=["the drawing has 5 round holes", "--holes"])
-        # Six pieces, with borders through the centres of all holes
+        # The area consists of six pieces, and a border cuts each hole through its centre.
         pieces = [gdspy.boolean(gdspy.Rectangle((left, 0), (min(left + 500, 2800), 1200)), holes, "not", max_points=0)
                   for left in range(-100, 2800, 500)]
         self.gdsii(DEVICE=pieces)
@@ -636,7 +636,7 @@ class Drawings(Analysis):
                 mask(*places)
                 self.refused("--holes", words=["the device's edge is no rectangle: "
                                                f"it has {edges} indentation", "posts at the edge", "--region"])
-        # Within a region the edge is a rectangle again.
+        # A region that leaves out the indentation has a rectangular edge.
         mask((0, 600))
         self.refused("--holes", words=["0.25 droplet diameters", "x=50 um, y=600 um"])
         self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--holes", "--region",
@@ -1038,7 +1038,8 @@ class OtherTools(Analysis):
         np.testing.assert_allclose(self.svg(styles + body + seen), [(800, 300, 100)], rtol=1e-3)
 
     def test_svg_style_sheets_follow_the_cascade(self):
-        # CSS 2.1, 6.4: !important, then specificity, then place. A group is drawn with its opacity as a whole (`opacity` in CSS).
+        # CSS 2.1, 6.4: !important decides first, then specificity, then the order in the sheet. `opacity` in CSS
+        # applies to a group as a whole.
         c, left = 'class="c"', '<clipPath id="left"><rect width="600" height="1200"/></clipPath>'
         seen, post = '<circle cx="800" cy="900" r="50"/>', '<circle cx="1600" cy="300" r="50" {}/>'
         for sheet, around, attributes in [
@@ -1231,7 +1232,8 @@ class OtherTools(Analysis):
                 np.testing.assert_allclose(self.svg(body), [(400, 900, 100)], rtol=1e-3)
         for attributes in ('overflow="visible"', 'style="overflow:auto"'):
             self.assertEqual(len(self.svg(f'<svg width="600" height="1200" {attributes}>{circles}</svg>')), 3)
-        # A post that crosses the viewport is cut, and an empty viewport shows nothing, but what follows is drawn.
+        # A post that crosses the border of the viewport is cut. An empty viewport shows nothing, but shapes after it
+        # are drawn.
         self.write("device.svg", SVG.format(f'<svg width="400" height="1200">{circles}</svg>'))
         np.testing.assert_allclose(np.ptp(self.device("device.svg").others[0] * 200, axis=0), [50, 100], rtol=1e-3)
         self.assertEqual(len(self.svg(f'<svg width="0" height="1200">{circles}</svg><circle cx="800" '
@@ -1260,20 +1262,20 @@ class OtherTools(Analysis):
         frame = '<rect x="{0}" y="{1}" width="3600" height="1200" fill="none" stroke="black"/>'
         posts = '<circle cx="{0}" cy="{1}" r="50"/>'
         size, view = 'width="3600" height="1200"', 'viewBox="{0} {1} 3600 1200"'
-        # The page is the size, the viewBox, or both, in several units.
+        # The page follows from the size of the drawing, from its viewBox, or from both. The size has several units.
         for page, left, top in ((size, 0, 0), (view.format(0, 0), 0, 0), (view.format(500, 200), 500, 200),
                                 (f"{size} {view.format(500, 200)}", 500,
                                  200), (f'width="3.6mm" height="1.2mm" {view.format(-300, 70)}', -300,
                                         70), (f'width="100%" height="100%" {view.format(500, 200)}', 500, 200)):
             for has_frame in (True, False):
                 seen = [(left + x, top + y) for x, y in ((800, 300), (1600, 900), (2400, 600))]
-                # Shapes beyond each side and corner. An edge that only touches the page is outside, too.
+                # Shapes are outside each side and each corner of the page. The edge of a shape may touch the page.
                 for places in ([(3651, 600)], [(-51, 600)], [(800, 1300), (900, 2000)], [(800, -50)], [(3700, 1300), (4500, 1400), (-700, -900)], [(3640, -40)]):
                     beyond = [(left + x, top + y) for x, y in places]
                     self.write("device.svg", f'<svg xmlns="http://www.w3.org/2000/svg" {page}>' + frame.format(left, top) * has_frame + "".join(posts.format(*place) for place in [*beyond, *seen]) + "</svg>")
                     with self.subTest(page=page, beyond=beyond, has_frame=has_frame):
                         expected = [(800, 900, 100), (1600, 300, 100), (2400, 600, 100)]
-                        if not has_frame:  # The margin of half a droplet is 100.
+                        if not has_frame:  # The device then begins half a droplet (100 um) beside the posts.
                             expected = [(x - 650, y - 150, diameter) for x, y, diameter in expected]
                         np.testing.assert_allclose(self.circles_of("device.svg", unit=1e-6 / self.width_in_drawing(3600)), expected, rtol=1e-3)
                         x, y = np.transpose(beyond)
@@ -1302,13 +1304,15 @@ class OtherTools(Analysis):
         posts = "".join(f'<circle cx="{x}" cy="{y}" r="50"/>'
                         for x, y in ((20, 600), (800, -20), (1600, 1180), (2400, 600), (3600, 600), (3620, 300)))
         self.write("device.svg", whole.format(posts))
-        # Without an edge, the device begins half a droplet, 100, beyond the posts.
+        # The drawing has no edge, so the device begins half a droplet (100 um) beside the posts.
         np.testing.assert_allclose(self.circles_of("device.svg"), [(150, 730, 100), (1730, 150, 100), (2530, 730, 100)], atol=0.2)
         self.assertEqual(self.drawing.notes, ["3 posts left out that reach into the page from outside"])
-        # The same posts in a larger drawing, of which a region is read. The edge of the region is the device's.
+        # The same posts are in a larger drawing, of which a region is read. The border of the region becomes the edge
+        # of the device.
         self.write("device.svg", whole.replace('0 0 3600 1200', '-1000 -1000 7200 2400').replace("3.6mm", "7.2mm").replace("1.2mm", "2.4mm").format(posts))
         np.testing.assert_allclose(self.circles_of("device.svg", region=(0, 0, 3600, 1200)), [(20, 600, 100), (1600, 20, 100), (2400, 600, 100)], atol=0.2)
-        # A background that is larger than the page is seen as the page, and a bar is cut.
+        # A background that is larger than the page becomes the edge of the page. A bar that crosses the border of the
+        # page is cut.
         self.write("device.svg", whole.format('<rect x="-100" y="-200" width="3800" height="1600"/><rect x="3000" '
                                               'y="400" width="900" height="300"/><circle cx="800" cy="300" r="50"/>'))
         device = self.device("device.svg")
@@ -1331,13 +1335,14 @@ class OtherTools(Analysis):
                 np.testing.assert_allclose(rows[np.lexsort((rows[:, 1], rows[:, 0]))], expected, rtol=1e-3)
                 # Without --holes, outlines within the outline are still posts.
                 np.testing.assert_allclose(self.circles_of("device.svg"), expected, rtol=1e-3)
-        # Boundaries with the same direction leave no hole. Neither does a path that is not filled.
+        # An area and a boundary within it with the same direction have no hole. A path without a fill has no hole,
+        # either.
         (self.folder / "posts.csv").unlink()
         for sweep, paint in ((1, ""), (0, 'fill="none" stroke="black"')):
             self.write("device.svg", page.format(f'<path {paint} d="{edge}{turned(4, 3, sweep)}"/>'))
             self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes",
                                  words=["no holes", "leave out --holes"])
-        # A clip that leaves the right half.
+        # The clip shows only the right half of the drawing.
         self.write("device.svg", page.format(f'<clipPath id="right"><rect x="1800" width="1800" height="1200"/></clipPath><path clip-path="url(#right)" fill-rule="evenodd" d="{edge}{turned(4, 3, 1)}{turned(13, 3, 1)}"/>'))
         self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts", "--holes")
         np.testing.assert_allclose(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4), (800, 600, 100), rtol=1e-3)
@@ -1357,7 +1362,7 @@ class OtherTools(Analysis):
         axes.set_axis_off()
         for x, y in [(800, 300), (1600, 900)]:
             axes.add_patch(matplotlib.patches.Circle((x, y), 50))
-        axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # a circle with a diameter of 0.1 inch
+        axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # A circle with a diameter of 0.1 inch.
         axes.add_patch(matplotlib.patches.Circle((-500, 600), 50))  # The axes clip this circle.
         figure.savefig(self.folder / "device.svg")
         np.testing.assert_allclose(self.circles_of("device.svg", droplet=0.2 * 25.4e-3) / 25.4, [(800, 300, 100), (1600, 900, 100), (2400, 600, 100)], rtol=1e-3)
@@ -1611,7 +1616,7 @@ class OtherTools(Analysis):
         image.save(self.folder / "bar.png")
         self.refuse_analysis("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "cut",
                              words=["not round", "cut scale bars", "--region"])
-        # If users follow the message, the bar becomes a post, and a message says so.
+        # With --as-circles the scale bar becomes a post. A message names such slender posts.
         printed = self.draw("circles", "bar.png", "--droplet", "200um", "--pixel", "2um", "--output", "barred",
                             "--as-circles").stdout
         self.assertIn(f"{len(ROW) + 1} posts, device", printed)
@@ -1655,7 +1660,8 @@ class OtherTools(Analysis):
         self.assertEqual(self.drawing.notes, ["the posts are dark (--posts)"])
 
     def test_posts_centred_beyond_the_border_of_a_picture_are_left_out_and_named(self):
-        # Less than half of the third post is in the picture, and more than half of the fourth; the fifth is beyond the upper border.
+        # Posts are added at three borders. Less than half of the first and of the third is in the picture. More than
+        # half of the second is in the picture.
         self.picture("L", 255, 0, "mask.png", extra=[(-12, 100), (885, 200), (400, -10)])
         np.testing.assert_allclose(self.circles_of("mask.png", unit=1e-6), [(200.5, 149.5, 61), (600.5, 149.5, 61), (885.5, 99.5, 61)], atol=1)
         printed = self.draw("circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts").stdout

@@ -26,7 +26,7 @@ class Limits(SweepTest):
                 self.assertEqual(done.stderr, f"clogsweep: cannot start MPI (this shell allows {most} open files, "
                                               "32 are needed); raise the limit: ulimit -n 1024\n")
         done = self.under(resource.RLIMIT_NOFILE, (10, 4096))
-        self.assertEqual(done.returncode, 0, done.stderr)  # The program itself raises the limit.
+        self.assertEqual(done.returncode, 0, done.stderr)  # The program raises a soft limit by itself.
 
     def test_too_few_processes(self):
         done = self.under(resource.RLIMIT_NPROC, (1, 1))
@@ -92,8 +92,8 @@ BRIEF = [word.replace("max-time=2e4", "max-time=5e3") for word in SLOW]
 
 
 class Places(SweepTest):
-    """Tests that a path is resolved only once. If other users change the path later, this affects neither their files
-    nor any row."""
+    """Tests that a sweep resolves its path only once. If other users change the path while the sweep runs, the sweep
+    must not lose a row, and must not write to the files of others."""
 
     def begin(self, sweep, output):
         """Starts a sweep. Waits until the sweep has written its table."""
@@ -151,7 +151,7 @@ ACCESS_LIST = "system.posix_acl_access"
 
 
 def access_list(reader):
-    """An access list for a file that only its owner may write. A second user may read the file."""
+    """An access list that lets the owner of a file read and write, and a second user read."""
     nobody = 2**32 - 1
     entries = [(0x01, 6, nobody), (0x02, 4, reader), (0x04, 0, nobody), (0x10, 4, nobody),
                (0x20, 0, nobody)]  # owner, a user, group, mask, others
@@ -204,8 +204,8 @@ class Access(SweepTest):
 
 
 class LinksOfOthers(SweepTest):
-    """Tests which links are followed. As with fs.protected_symlinks, only the user's own links are followed in a folder
-    where everybody may make links."""
+    """Tests which links are followed. In a folder where everybody may make links, only the user's own links are
+    followed. The Linux setting fs.protected_symlinks has the same rule."""
 
     def open_folder(self):
         folder = self.folder / "open"
@@ -272,7 +272,7 @@ class Refusals(SweepTest):
     """Tests a file system that stores the rows and then fails."""
 
     def where(self, fails, **more):
-        """The environment in which these system calls of a program fail."""
+        """An environment that makes these system calls of a program fail."""
         self.write("shim.c", SHIM)
         subprocess.run(["cc", "-shared", "-fPIC", "-o", "shim.so", "shim.c", "-ldl"], cwd=self.folder, check=True)
         return {**os.environ, "LD_PRELOAD": str(self.folder / "shim.so"), "FAILS": fails, "ASAN_OPTIONS": f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0", **more}

@@ -204,7 +204,7 @@ class Readers(Analysis):
                     rows[name] = np.nan
             for name, value in {"longest_dwell": 0.5, "longest_dwell_at": 0.2, "longest_dwell_from": 0.3}.items():
                 rows[name][rests] = value
-            # The droplet of seed 3 fails before it rests, and that of seed 12 after.
+            # The droplet of seed 3 fails before it rests. The droplet of seed 12 fails after its rest.
             for seed, share in ((3, 1.5), (12, 0.5)):
                 rows["longest_dwell_at"][rows["seed"] == seed] = share * rows["sound_distance"][rows["seed"] == seed]
             rows["last_dwell_at"] = np.fmax(rows["last_dwell_at"], rows["longest_dwell_at"])
@@ -212,7 +212,8 @@ class Readers(Analysis):
         stored_rows.change(self.folder / "s.h5", let_droplets_rest)
         self.succeed("clogsweep", "verify", "s.h5")
         for group in self.fit("s.h5", "--dwell=0.1")["groups"]:
-            # The droplets of seeds 3 and 7 failed, and that of seed 8 was interrupted.
+            # Nine droplets clogged or rested. Of the others, the droplets of seeds 3 and 7 failed, and the droplet of
+            # seed 8 was interrupted.
             self.assertEqual((group["runs"], group["clogs"], group["failed"], group["interrupted"]), (12, 9, 3, 1))
         rows = table(self.folder / "s.h5")
         rest, end = rows.longest_dwell_at, rows.last_dwell_at
@@ -230,7 +231,7 @@ class Readers(Analysis):
 
 
 class Settled(ProgramTest):
-    """Tests that a failure that every attempt would repeat is as final as a result."""
+    """Tests that a run is not repeated if every attempt would fail in the same way."""
 
     def setUp(self):
         super().setUp()
@@ -284,7 +285,7 @@ class Seeds(ProgramTest):
             self.assertEqual((group["runs"], group["failed"]), (6, 2))
 
     def test_until_precision_counts_clogs_and_not_failures(self):
-        # It takes eleven clogs. At this line tension almost every droplet clogs.
+        # A precision of 75 % needs eleven clogs. At this line tension almost every droplet clogs.
         command = ["clogsweep", *PRECISE, "--until-precision=75%", "--most-seeds=20", "--output", "s.h5"]
         self.copy_sweep("s.h5", *PRECISE)
         self.spoil([2, 3, 4, 5])
@@ -358,8 +359,8 @@ class Searches(Analysis):
     """Tests commands that depend on the ends of droplets."""
 
     def run_and_fail(self, failures):
-        """@return a function that runs a program. It makes those runs of the program's sweep fail that failures(rows)
-        chooses."""
+        """@return a function that runs a program, and then makes runs of the program's sweep fail. failures(rows)
+        chooses these runs"""
         original = programs.run_program
 
         def run(program, *words):
@@ -399,7 +400,8 @@ class Searches(Analysis):
         done = self.draw("critical-angle", "s.h5", "--programs", BIN, "--format", "csv")
         self.assertEqual([line.split(",")[-1] for line in done.stdout.splitlines()], ["runs", "1", "2"])
         self.assertEqual(done.stderr, "1 of 4 runs failed and do not count\n")
-        # The other run of this tension is at 15 degrees; an unfinished run may leave the rows later.
+        # First all four runs are unfinished, and then the two runs at the smaller angle. An unfinished run shows
+        # nothing, because its droplet may still leave the rows.
         before = [line.split(",") for line in expected.splitlines()]
         for which in (lambda rows: rows["task"] >= 0, lambda rows: rows["lattice_angle"] < 20):
             self.copy_sweep("s.h5", *keys)

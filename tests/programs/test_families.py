@@ -16,7 +16,7 @@ from support import BIN, FAMILIES, SNAPSHOT_OF_A_DAUGHTER, TIMING, SweepTest, sh
 import clogsweep
 from clogsweep.drawing import families
 
-# Families with runs that take seconds. They have snapshots of ancestors and of daughters.
+# Families with runs that take seconds, so that they have snapshots of ancestors and of daughters.
 LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
 
 
@@ -35,7 +35,7 @@ class Families(SweepTest, Analysis):
         pandas.testing.assert_frame_equal(droplets(self.folder / name), droplets(self.folder / other), check_exact=True)
 
     def deepest(self):
-        """The line of a daughter of a daughter that was followed."""
+        """The table's line for a droplet of the youngest generation that was followed."""
         followed = self.droplets[self.droplets.status != "small"]
         return max(followed.itertuples(), key=lambda member: len(member.path))
 
@@ -87,7 +87,8 @@ class Families(SweepTest, Analysis):
             self.refuse(program, "replay", "s.h5", 0, "--droplet", "0000000", *more, words=[f"task 0 are {paths})"])
 
     def test_a_replay_repeats_daughters_with_the_springs_of_a_preset(self):
-        """A row states the stiffness of the ancestor's springs, but not its ratio to the line tension."""
+        """The springs of daughters follow from the ratio of spring stiffness to line tension. A row has only the
+        stiffness for the ancestor, so the replay must take the ratio from the preset."""
         self.succeed("clogsweep", *FAMILIES, "preset=elastic", "--quiet", "--output", "e.h5")
         self.assertGreater(len(droplets(self.folder / "e.h5")), 1)
         self.assertIn("the same bits", self.succeed("clogsweep", "replay", "e.h5", 0).stdout)
@@ -217,7 +218,7 @@ class Families(SweepTest, Analysis):
         self.assertIn("not known", self.succeed("clogfit", "s.h5").stdout)
 
     def test_more_lines_are_counted_as_pandas_counts_them(self):
-        """A droplet is counted at the first line that it, or a droplet from which it descends, passes."""
+        """A droplet that passes a line counts at this line, but its daughters do not count there again."""
         lines = json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines", "3,7").stdout)
         for line in lines["groups"][0]["families"]["lines"]:
             reach = self.droplets[["birth_distance", "end_distance"]].max(axis=1)

@@ -143,7 +143,7 @@ class Parts(unittest.TestCase):
             self.assertGreater(np.abs(np.diff(colours, axis=0)).max(axis=1).min(), 0.3)
 
     def test_all_frames_of_the_reference_in_figure_B2_lie_within_the_compared_passages(self):
-        # The passages have equal speeds at different places. Between equal passages, deviations would be 0.
+        # The passages have the same profile, but frames at different places. All deviations must be 0.
         def run(step):
             h = np.arange(-2, 2, step)
             word = {"line_tension": 1.7, "near_wall_drag": 0.21, "terminal_speed": 0.028, "vertices": 64, "orifice": 0.9}
@@ -212,7 +212,7 @@ class Drawn(Analysis):
             self.assertIn("seeds 1 to ", about)
 
     def assert_sags(self, name):
-        """Checks the sags. A soft disk sinks by pi/(16 E_w): it has no shape, so its top and its centre sink alike."""
+        """Checks the sags. A soft disk cannot change its shape, so its top and its centre both sink by pi/(16 E_w)."""
         disks = [point for point in self.drawn(name) if point["model"] == "sp"]
         self.assertGreater(len(disks), 0)
         for point in disks:
@@ -246,11 +246,11 @@ class Drawn(Analysis):
         task = clogs.task.iloc[-1]
         with h5py.File(sweep.parent.parent / "runs" / f"clogging-friction-{task}.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
-        # A figure that is drawn from existing files must show the droplet that its label names.
+        # With --draw-only a figure is refused if a stored replay is not that of the droplet that the figure would name.
         self.call_wrapped(sweep, 0)
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only",
                              words=["clogging-friction-", "leave out --draw-only"])
-        # clogsweep itself refuses settings that differ from those of the file.
+        # clogsweep refuses to resume the sweep with other settings.
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--set",
                              "clogging-friction:box=30", words=["box"])
 
@@ -293,7 +293,7 @@ class Drawn(Analysis):
         self.figures(*redrawn, "--draw-only", "--set", "channel:max-time=200")
         self.figures(*names, "--set", "seeds=1..3")
         self.assertEqual(self.times_of_runs(), before)
-        # clogsweep itself refuses settings that differ from those of the sweep.
+        # Without --draw-only, clogsweep refuses to resume the sweep with other settings.
         self.refuse_analysis("figures", redrawn[0], "--output", ".", "--programs", BIN, *SET, "--set",
                              "channel:max-time=200", words=["max-time"])
 
@@ -339,8 +339,8 @@ class Figures(Drawn):
                 self.succeed("clogsweep", "--config", config, *beside, "--print-config")
 
     def test_soft_droplets_have_fine_meshes_or_their_own_inertia(self):
-        """The meshes are for droplets without friction, the inertia for droplets that slide off obstacles fast. Families
-        are compared between meshes."""
+        """Soft droplets without friction need fine meshes. Droplets that slide off obstacles fast need their own
+        inertia. Files of families are left out, because they compare meshes."""
         for points in (ROOT / "jobs/figures").glob("*.csv"):
             if points.name.startswith("families"):
                 continue
@@ -543,10 +543,10 @@ class Pictures(Analysis):
         self.assertTrue((image.imread(self.folder / "from-fit.png") == image.imread(self.folder / "from-sweep.png")).all())
 
     def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
-        # One post leaves a gap at each side wall. Both gaps are narrower than the droplet.
+        # Between the post and each side wall there is a gap that is narrower than the droplet.
         self.write("post.csv", "3,0.9,1\n")
-        # The edges have different lengths, so straight edges touch at other places than the curved interface. Contact
-        # is tested at the surface, and at a distance from the surface (contact-range).
+        # The edges have different lengths, so straight edges touch at other places than the curved interface. The cases
+        # have contact at the surface, or at the distance `contact-range` from the surface.
         for name, points_per_vertex, keys in [
             ("surface", 2, ["preset=elastic", "vertices=32", "line-tension=0.3,1", "box=20"]),
             ("off", 2, ["contact-range=half-vertex", "vertices=32", "line-tension=1", "box=20"]),
@@ -693,8 +693,8 @@ class Pictures(Analysis):
         self.assertGreater(len(run.times), 1000)
         self.assertEqual(frames[-1], len(run.times) - 1)
         self.assertLessEqual(len(frames), 100)
-        # In ten frames the droplet moves too far for the eye. So the film shows only the end of the run, in steps that
-        # the eye can follow.
+        # The whole run in 100 frames would have steps that the eye cannot follow, so the film shows only the end of the
+        # run.
         self.assertGreater(frames[0], 0)
         steps = np.abs(np.diff(trajectory.centroids(run.polygons)[frames], axis=0)).sum(axis=1)
         self.assertLess(steps.max(), 2 * film.LONGEST_STEP)

@@ -17,8 +17,8 @@ from clogsweep.curves import answer, features, model, points, table  # noqa: E40
 from clogsweep.tools.errors import UserError  # noqa: E402
 
 # RECORDS are outputs of `clogfit curve` (git 0b3b912ecf24) for sweeps with invented distances. Each record contains the
-# command, the output, and the clogs of each point by mechanism. Of the output it has every fourth grid point of a
-# curve, or every thirteenth of a surface.
+# command, the output, and the clogs of each point by mechanism. The output in a record has only every fourth grid point
+# of a curve, or every thirteenth of a surface.
 RECORDS = json.loads((pathlib.Path(__file__).parent / "data" / "curves.json").read_text())["records"]
 LENGTH = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
 
@@ -60,7 +60,7 @@ class Records(unittest.TestCase):
                             key=lambda crossing: abs(crossing.place - math.log(one[key])))
                 self.assertEqual(found.is_upward, one["direction"] == "upwards")
                 for value, name in ((found.place, key), (found.lower, f"{key}_lower"), (found.upper, f"{key}_upper")):
-                    # An end that is 0 or None means that the interval has no end on this side.
+                    # The recorded end is 0 or None if the interval is infinite on this side.
                     self.assertAlmostEqual(math.exp(-value) * one[name] if one[name] else 1.0 * math.isinf(value), 1, delta=1e-6)
 
     def test_peaks_agree_and_their_intervals_do_within_the_scatter_of_the_draws(self):

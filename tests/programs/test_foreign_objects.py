@@ -35,7 +35,7 @@ class Foreign(Analysis):
                 path = self.copy_sweep("s.h5", *FEW)
                 path.chmod(0o644)
                 add(path)
-                # More seeds, and nothing left to do.
+                # The first command adds seeds. With the second command nothing is left to do.
                 for arguments in ([word.replace("1..2", "1..3") for word in FEW], FEW):
                     self.refuse("clogsweep", *arguments, "--output", "s.h5",
                                 words=["cannot resume s.h5", name, "clogsweep salvage s.h5 --output"])

@@ -27,7 +27,7 @@ class Installation(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         first = cls.folder / "first"
         cls.called("cmake", "--install", BIN.parent, "--prefix", first)
-        # The installation is moved. A program that depends on the old place fails then.
+        # The installation is moved, so that programs fail if they depend on the first place.
         cls.prefix = cls.folder / "moved"
         first.rename(cls.prefix)
 
@@ -46,7 +46,7 @@ class Installation(unittest.TestCase):
 class Installed(Installation):
     def test_nothing_knows_where_it_was_built(self):
         cache = (BIN.parent / "CMakeCache.txt").read_text()
-        # A build with sanitizers contains the full path of every source. It is not checked, because nobody installs
+        # A build with sanitizers contains the full path of every source, but is not checked, because nobody installs
         # such a build.
         sources = [] if "CLOG_SANITIZE:STRING=address" in cache else [ROOT, BIN.parent]
         for path in self.prefix.rglob("*"):

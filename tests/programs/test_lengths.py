@@ -85,8 +85,8 @@ class Lengths(ProgramTest):
                                ("lower", 0.1673309097769), ("upper", 0.753399790371)]:
             self.assertAlmostEqual(steps[4][name], expected, places=9)
         self.assertEqual(maintained["censored_distances"], [13, 28, 45, 161])
-        # The table of the Python module. Some expected values come from R's summary(..., times=161). The others come
-        # from the last step of the second group, for which R, too, gives no bounds.
+        # Checks the last line of the Python module's table. For the first group the expected values come from R's
+        # summary(..., times=161). At the end of the second group, R has no bounds, either.
         groups = [*printed["groups"], {"survival": [], "censored_distances": [1, 3, 3], "runs": 3}]
         known = types.SimpleNamespace(output={"groups": groups}, known=types.SimpleNamespace(with_lengths=lambda: None))
         end, not_censored, none = (fit.Fit.survival(known, group).iloc[-1].to_dict() for group in range(3))
@@ -162,7 +162,7 @@ class Lengths(ProgramTest):
                 self.refuse("clogfit", *command, words=[f"own.csv line 1: column '{name}'", "outcome", "delete it"])
 
     def test_labels_with_only_clogged_or_only_moving_droplets_are_named(self):
-        """It is no error if nothing clogs at one concentration."""
+        """The message is a note and not an error: for instance, no droplet may clog at one of two concentrations."""
         def printed(*lines):
             self.write("own.csv", "distance [mm],clogged,x,y\n" + "".join(f"{line}\n" for line in lines))
             return self.succeed("clogfit", "lengths", "own.csv").stderr
@@ -171,17 +171,17 @@ class Lengths(ProgramTest):
         outcomes = ["5,1,c,1", "6,0,f,1", "7,1,c,1", "8,0,f,1"]
         self.assertEqual(printed(*outcomes), note)
         self.assertEqual(printed(*outcomes, "9,0,alone,2"), note)
-        # A table of few droplets
+        # The note also appears for a table of three droplets
         for lines in (outcomes[:3], outcomes[1:], ["5,1,c,1", "6,0,f,1", "7,0,f,1"]):
             self.assertEqual(printed(*lines), note)
-        # A column that numbers the droplets, and one with few droplets of equal values
+        # No note appears if a column numbers the droplets, or if few droplets share a value
         self.assertNotIn("restates", printed("5,1,1,1", "6,0,2,1", "7,1,3,1", "8,0,4,1"))
         self.assertEqual(printed("4,0,0,1", *(f"{5 + i},{i % 2},{i},1" for i in range(9))), "")
         for line in ("9,0,c,1", "9,1,f,1"):
             self.assertEqual(printed(*outcomes, line), "")
         self.assertEqual(printed("5,1,c,1", "6,1,f,1", "7,1,c,1", "8,1,f,1"), "")
         self.assertEqual(printed("5,1,c,1", "7,1,c,1"), "")
-        # Quantities that were set before the run
+        # No note appears for quantities that were set before the run
         for name in ("line-tension", "line_tension", "diameter [mm]", "angle"):
             self.write("own.csv", f"distance [mm],clogged,{name}\n5,1,1\n6,0,2\n7,1,1\n8,0,2\n")
             self.assertEqual(self.succeed("clogfit", "lengths", "own.csv").stderr, "")
@@ -193,7 +193,7 @@ class Lengths(ProgramTest):
             unknown = (60, None) if unit == "mm" else (None, 30)
             self.write("own.csv", f"diameter [um],distance [{unit}],clogged\n" + "".join(
                 f"{diameter and 1000 * diameter},{way / to_mm[diameter]!r},1\n" for diameter, way in rows))
-            for lab in ([], ["--lab", "lab.cfg"]):  # An empty cell need not mean the laboratory's droplet.
+            for lab in ([], ["--lab", "lab.cfg"]):  # --lab must not fill in the diameter where a cell is empty.
                 found = {group["diameter"]: (group["clogging_length_mm"], group["clogging_length"]) for group in self.lengths("own.csv", *lab)["groups"]}
                 self.assertEqual(found, {None: unknown, 1: (10, 10), 2: (20, 10), 2.5: (50, 20)})
                 text = self.succeed("clogfit", "lengths", "own.csv", *lab).stdout
@@ -217,7 +217,7 @@ class Lengths(ProgramTest):
                                   ("diameter [mm]", "-2", ["above 0"]), ("angle [deg]", "1,000", ["'1,000'"]), ("angle", "flat", ["line 2: angle is 'flat'", "empty"])]:
             self.refuse("clogfit", "lengths", self.write("own.csv", f"distance [mm];clogged;{head}\n12.5;1;{cell}\n"), words=["own.csv", *words])
             self.refuse("clogfit", "lengths", self.write("own.csv", f'{head},distance [mm],clogged\n"{cell}",12,1\n'), words=["own.csv", *words])
-        # A table without distances gets no message about a diameter.
+        # For a table without distances, the message must name the missing column, not the diameter.
         self.refuse("clogfit", "lengths", self.write("own.csv", "x,y,diameter\n1,2,3\n"),
                     words=["own.csv line 1: has no column distance"])
 
@@ -236,7 +236,7 @@ class Lengths(ProgramTest):
         self.assertEqual(self.lengths("own.csv")["groups"][0]["clogging_length_mm"], 3)
 
     def test_a_column_does_not_have_the_name_of_a_result(self):
-        """Takes the names from what the commands print, so names of later results are tested, too."""
+        """The names of results come from what the commands print, so results that are added later are tested, too."""
         self.write("lab.cfg", LAB)
         self.write("own.csv", "distance [mm],clogged,wall\n3,1,a\n5,1,b\n6,1,a\n")
         for arguments, labels in ((["lengths", "own.csv", "--lab",
@@ -252,7 +252,7 @@ class Lengths(ProgramTest):
                 for form in ("text", "csv") if name in names else ["text"]:
                     self.refuse("clogfit", *(word.replace("own.csv", "taken.csv") for word in arguments), "--format",
                                 form, words=[f"taken.csv line 1: column '{name}' has the name of a result; rename it"])
-        # A result of one command is a label of the other one.
+        # `ratio` is a result of clogfit compare, so clogfit lengths accepts a column of this name.
         self.write("own.csv", "distance [mm],clogged,ratio\n3,1,7\n5,1,8\n")
         self.assertEqual([group["ratio"] for group in self.lengths("own.csv")["groups"]], [7, 8])
 
@@ -368,7 +368,8 @@ class Lengths(ProgramTest):
         self.assertEqual(axes.get_xlim()[0], -2)
 
     def test_a_comparison_corrects_the_tests_of_all_its_groups_together(self):
-        # The p-values of groups of 12 droplets at the quantiles of Weibull's law of these shapes are 0.03 and 0.0002.
+        # Each group has 12 droplets at the quantiles of a Weibull law. The p-values for these shapes are 0.03 and
+        # 0.0002.
         near, far = 1.65, 2.66
 
         def ways(shape, length):
@@ -452,7 +453,7 @@ class Beside(ProgramTest):
         self.assertIn("own.csv: left out, 2 of 4 groups match no runs of sweep.h5, such as diameter=4", done.stderr)
         self.write("angles.csv", "distance [mm],clogged,angle\n6,1,45\n")
         self.refuse("clogfit", "compare", "angles.csv", "sweep.h5", "--lab", "lab.cfg", words=["no group"])
-        # Two tables have the lengths of their own droplets.
+        # If both tables have diameters, each length is that of the table's own droplet.
         self.write("other.csv", "distance [mm],clogged,diameter [mm]\n20,1,4\n5,1,2\n")
         for lab in ([], ["--lab", "lab.cfg"]):
             for one in self.compare("own.csv", "other.csv", *lab):
@@ -461,7 +462,7 @@ class Beside(ProgramTest):
         self.write("other.csv", "distance [sigma],clogged\n10,1\n")
         self.assertEqual([one["ratio"] for one in self.compare("own.csv", "other.csv")],
                          [10 / 3, 10 / (10 / 2.004), 1, 10 / 15])
-        # The picture excludes these droplets, too.
+        # With --lab the picture also leaves out droplets with other diameters.
         for options, kept in ((["--lab", self.folder / "lab.cfg"], [(2, 3), (2.004, 10 / 2.004)]), ([], [(2, 3), (2.004, 10 / 2.004), (4, 10), (4, 15)])):
             with contextlib.redirect_stderr(io.StringIO()) as said:
                 own = measured.lengths_of(self.folder / "own.csv",
@@ -479,7 +480,7 @@ class Beside(ProgramTest):
             measured.lengths_of(self.folder / "own.csv", fit.read(self.folder / "sweep.h5", None).known, None)
         self.assertTrue(said.getvalue().endswith("own.csv: columns without a match in the sweep: wall\n"),
                         said.getvalue())
-        # A number may be rounded. If a key has one value in the sweep, the table must have exactly this value.
+        # Numbers in the table may be rounded. A key with only one value in the sweep must have this value in the table.
         self.write("own.csv", "distance [sigma],clogged,line-tension\n3,1,1.004\n")
         self.assertEqual([one["line_tension"] for one in self.compare("own.csv", "sweep.h5")], [1])
         self.write("own.csv", "distance [sigma],clogged,vertices\n3,1,96\n")

@@ -70,7 +70,7 @@ class Names(Analysis):
                 name, *options = command
                 self.draw(name, "./-dash.h5", *options, "--output", f"./-{name}", "--programs", BIN)
         self.draw("export", "./-dash.h5", "./-rows.csv", "--programs", BIN)
-        # These commands read the sweep, and refuse it.
+        # These commands must read the sweep before they refuse it.
         for name, more, words in (("clogs", [], "no clogged polygon"), ("curve", [], "only 2 values"), ("critical-angle", [], "no lattices"), ("compare", ["./-dash.h5"], "no ratio to draw")):
             with self.subTest(name):
                 self.refuse_analysis(name, "./-dash.h5", *more, "--programs", BIN, words=[words])
@@ -175,8 +175,8 @@ class Outputs(Analysis):
         self.assertEqual(page.read_text(encoding="utf-8"), "<!DOCTYPE html> earlier")
 
     def test_every_output_takes_the_place_of_the_earlier_one(self):
-        """A second name of the earlier file still leads to the old content. So the command did not write into this
-        file."""
+        """The earlier file has a second name, which must still lead to the old content: a command must not write into
+        an earlier file."""
         self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4")
         self.copy_sweep("run.h5", "array", *QUICK, "line-tension=3", "seeds=1", "--polygon-interval=20",
                         program="clogrun")

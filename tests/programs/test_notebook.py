@@ -1,5 +1,5 @@
-"""Runs the cells of the gallery's notebook, with fewer and shorter runs. So it tests that the module has everything
-that the cells call.
+"""Runs the cells of the gallery's notebook, with fewer and shorter runs, to test that the module has everything that
+the cells call.
 
 slow_notebook tests whether the cells print the stored outputs.
 """
@@ -19,7 +19,7 @@ SHORTER = {"mpirun -np 2 clogsweep": str(BIN / "clogsweep"), "line-tension=0.2,0
 
 
 def run_cells(cells):
-    """Runs cells. Like a notebook, it shows the value of the last line of each cell."""
+    """Runs cells, and shows the value of the last line of each cell as a notebook does."""
     names = {}
     for cell in cells:
         *body, last = ast.parse(cell).body

@@ -32,7 +32,7 @@ from clogsweep.tools.errors import UserError  # noqa: E402
 
 SCHEMA = json.loads(subprocess.run([BIN / "clogsweep", "--schema"], check=True, capture_output=True, text=True).stdout)
 NUMBERS = {key["key"]: key for key in SCHEMA["keys"] if key.get("role") == "physics" and key["kind"].startswith("number")}
-# Keys that have no curve (keys of channels), and keys that have their own search.
+# Keys of channels have no curve. The angle of lattices has another search.
 ELSEWHERE = {name for name, key in NUMBERS.items() if key["scope"] == "channel"} | {"lattice-angle"}
 GOAL = "--until=curve=70%"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT / "analysis")}
@@ -104,7 +104,7 @@ class EveryKey(ProgramTest):
         return rows.assign(task=range(len(rows)), seed=range(1, len(rows) + 1), model="dp", vertices=64.0)
 
     def check_membership(self, keys, settings, values):
-        """Checks that a row belongs to a value if it has the parameters of this value, and only then."""
+        """Checks that exactly those rows belong to a value that have all parameters of the value."""
         members, rows = self.members(keys, settings, values), self.rows(self.tasks(keys, settings, values), 2)
         others = []
         for column in SCHEMA["columns"]:
@@ -438,10 +438,10 @@ class CriticalAngle(RefineTest):
                 angle = critical_angle.nearest_angle(planned, wanted)
                 printed = self.plan(*lattice, *words, f"lattice-angle={angle}")
                 self.assertIn(f"at {angle:.4g} degrees (tan", printed)
-                if words == ["box=20"]:  # no lattice is within the 0.1 degrees that clogsweep allows
+                if words == ["box=20"]:  # The angle of the nearest lattice differs by more than clogsweep allows (0.1).
                     tilts = [math.degrees(math.atan2(q, p)) for p in range(1, 7) for q in range(p) if 4 <= p * p + q * q <= (20 / 3)**2]
                     self.assertAlmostEqual(angle, min(tilts, key=lambda tilt: abs(tilt - wanted)))
-                elif "length=13" in words:  # four columns, each shifted by q/4 of the pitch
+                elif "length=13" in words:  # Four columns fit. Each is shifted against the last by q/4 of the pitch.
                     self.assertAlmostEqual(angle, math.degrees(math.atan(1 / 4)))
         self.assertIsNone(critical_angle.nearest_angle(refine.planned(BIN / "clogsweep", *lattice, "box=5.2", "lattice-angle=8"), 8))
 

@@ -129,7 +129,7 @@ class Lengths(Browser):
             for name in ("runs", "clogs"):
                 self.assertEqual(shown[name], str(group[name]))
             self.assertEqual(shown["seeds"], "1 to 4")
-            # Few runs clogged, so clogfit's sentence about few clogs appears.
+            # Few runs clogged, so the card contains clogfit's sentence about few clogs.
             self.assertIn("more droplets are needed", shown["doubts"])
             # Only the curve of this point is bright in the legend.
             bright = first_chart.find_elements(By.CSS_SELECTOR, ".legend.of")
@@ -172,7 +172,7 @@ class Lengths(Browser):
         self.browser.switch_to.active_element.send_keys(Keys.ENTER)
         self.assertEqual(heading.get_attribute("aria-sort"), "descending")
         self.assertEqual(lengths(), sorted(before, reverse=True))
-        # Each point still shows its own row.
+        # After the table was sorted, each point must still show its own row.
         self.point_at(self.find_all(POINT)[0])
         self.assertIn(self.shown()[name], self.find_all(POINT)[0].get_attribute("aria-label"))
 

@@ -484,8 +484,8 @@ class Resumed(SweepTest):
 
 
 class Batch(ProgramTest):
-    """Tests the scripts for batch systems. Other commands replace those of these systems, and only record their
-    arguments."""
+    """Tests the scripts for batch systems. The commands of these systems are replaced by commands that only record
+    their arguments."""
 
     def script(self, name, *arguments, **environment):
         for command in ("scontrol", "qsub"):

@@ -80,7 +80,8 @@ class Parts(test_figures.Drawn):
                          [24, 4, 0, 2])
         assert_fitted(self, sweep)
 
-        # Figures from the rows are those of the sweep itself. Groups with missing runs are an exception.
+        # A figure from finished rows shows the same numbers as a figure from the sweep, but leaves out groups with
+        # missing runs.
         sweep.fit["groups"][0]["planned"] = 7
         finished.write("clogging-sp", sweep, rows)
         self.draw("figures", "7a", "--from-rows", rows, "--output", ".", "--programs", BIN)
@@ -89,7 +90,7 @@ class Parts(test_figures.Drawn):
                          sorted([str(group[name]) for name in names] for group in sweep.fit["groups"][1:]))
         self.assertIn("6 of 7 runs", (self.folder / "full" / "figure-7a.txt").read_text())
 
-        # Figures without a sweep are named.
+        # The message names the missing sweep.
         options = ["--from-rows", rows, "--output", ".", "--programs", BIN]
         self.refuse_analysis("figures", "9a", *options, words=["speed-sp", "--size full"])
         for option in ("--draw-only", "--set=seeds=1"):

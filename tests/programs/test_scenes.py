@@ -1,5 +1,5 @@
-"""Tests sweeps of channels, flat walls and user-supplied circles. Such sweeps have the same keys as single runs, and a
-row for each run."""
+"""Tests sweeps of channels, flat walls and user-supplied circles. The keys of these sweeps are those of single runs,
+and each run has a row."""
 
 import json
 import math
@@ -86,7 +86,7 @@ class Channels(Analysis):
         row = rows[1]
         self.succeed("clogrun", "channel", *CHANNEL, "line-tension=0.6", "--sample-interval", 0.001, "--output", "r.h5")
         with h5py.File(self.folder / "r.h5") as file:
-            samples = file["trajectory"][1:]  # The row's results come from the checks, and do not include the release.
+            samples = file["trajectory"][1:]  # The first sample is the release, which the row's results do not include.
         largest = np.argmax(samples["shape_parameter"])
         self.assertEqual(row.largest_shape_parameter, samples["shape_parameter"][largest])
         self.assertEqual(row.largest_shape_parameter_at, samples["h"][largest])
@@ -285,7 +285,7 @@ class OwnCircles(ProgramTest):
         self.assertEqual({row.obstacle_filling for row in rows}, {"file"})
         self.assertEqual({row.obstacle_density for row in rows}, {0.06})
         self.assertAlmostEqual(rows[0].obstacle_gap, np.hypot(1.2, 0.6) - 0.4)
-        # clogrun must compute the same run.
+        # clogrun array must give the result that is in the sweep's row.
         self.succeed("clogrun", "array", *OWN, "line-tension=1", "--output", "r.h5")
         run, = read_rows(self.folder / "r.h5")
         self.assertEqual((run.distance, run.lateral_displacement, run.obstacles),
@@ -302,7 +302,7 @@ class OwnCircles(ProgramTest):
         self.refuse("clogsweep", *OWN, "--output", "s.h5", words=["posts.csv"])
 
     def test_seeds_release_it_anywhere(self):
-        # In this array every lane along the flow is blocked by posts.
+        # Posts block every lane along the flow.
         (self.folder / "dense.csv").write_text("x,y,diameter\n"
                                                + "".join(f"{3 * i % 10},{1.25 * i + 0.6},0.5\n" for i in range(8)))
         keys = ["obstacles=dense.csv", *OWN[1:-1], "line-tension=0.1", "max-time=400", "release=anywhere"]
@@ -455,7 +455,8 @@ class RandomDevices(ProgramTest):
         return [f"obstacles={name}", f"box={box}", f"length={length}"], length
 
     def check_sweep(self, name, keys):
-        """Runs a sweep. Its rows must be sound and repeatable. @return its rows"""
+        """Runs a sweep. Checks that its rows are sound, and that a replay of each row gives the same bits.
+        @return its rows"""
         self.succeed("clogsweep", *keys, "--output", name)
         rows = table(self.folder / name)
         box, length = rows.box[0], rows.length[0] or rows.box[0]
@@ -483,7 +484,7 @@ class RandomDevices(ProgramTest):
         self.assertGreater(self.num_across_border, 3)
 
     def test_no_droplet_starts_within_the_outline_of_a_post(self):
-        # There are a ring and a square of circles in rows, both with room for a droplet inside, and an open ring.
+        # Rows of circles form a ring, a square and an open ring. A droplet would fit into each of them.
         for model, more in self.KEYS.items():
             places = self.random.permutation([(3, 3), (3, 9), (9, 6)])
             ring, square, open_ring = places + self.random.uniform(-0.5, 0.5, 2)

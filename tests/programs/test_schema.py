@@ -12,8 +12,8 @@ from clogsweep import style
 from clogsweep.drawing import clogs, curve
 from clogsweep.labels.groups import Groups
 
-# Settings for two kinds of keys: keys that apply only to certain runs, and keys with words as values, which take no
-# list
+# Settings for two kinds of keys: keys that apply only to certain runs, and keys whose values are words, because these
+# keys take no lists
 SURROUNDINGS = {
     "lattice-angle": ["obstacle-layout=lattice", "box=60", "obstacle-gap=0.5"],
     "pitch": ["obstacle-layout=lattice", "box=60"],

@@ -122,7 +122,7 @@ class Sizes(LaboratoryTest):
                 np.testing.assert_allclose(np.stack([circles["x"], circles["y"], 2 * circles["radius"]], axis=1) * diameter,
                                            np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=2), rtol=1e-12, atol=1e-12)
                 self.assertAlmostEqual(row["box"] * diameter, 10.2)
-        # For each droplet size, the circles equal those of a file that was drawn for this size.
+        # The stored circles of each droplet size equal the circles of a file for this size alone.
         self.write("small.csv", POSTS.replace("droplet=1mm", "droplet=0.8mm"))
         self.succeed("clogsweep", "--lab", self.lab(diameter="0.8 mm", angle="20 deg"), *keys[1:],
                      "obstacles=small.csv", "--output", "one.h5")
@@ -218,7 +218,7 @@ class Sizes(LaboratoryTest):
         self.assertEqual(len(self.fit("s.h5")["groups"]), len(SETS))
 
     def test_laboratories_with_the_same_runs_share_them(self):
-        # Tilts differ, but runs do not depend on them.
+        # The laboratories differ in the tilt, but with these keys runs do not depend on the tilt.
         keys = ["line-tension=0.5", "terminal-speed=0.03", "obstacle-gap=0.4sigma", "vertices=64", "box=20sigma", "max-time=40", "seeds=1..2"]
         self.sweep(*keys, diameter="0.8 mm", angle="20 deg")
         before = table(self.folder / "s.h5")
@@ -324,9 +324,9 @@ class Sizes(LaboratoryTest):
             self.write("own.csv", f"distance [mm],clogged,{diameter},{angle}\n3,1,{1.6 * factor},20\n5,1,{1.6 * factor},20\n4,0,{0.8 * factor},45\n")
             found = json.loads(self.succeed("clogfit", "compare", "own.csv", "s.h5", "--format", "json").stdout)
             self.assertEqual({(one["diameter"], one["angle"]) for one in found["comparisons"]}, {(1.6, 20.0), (0.8, 45.0)})
-            # These parameters follow from the droplet, so they would only widen the table.
+            # Parameters that follow from the droplet are no columns.
             self.assertFalse({"laboratory", "line_tension", "obstacle_gap"} & set(found["comparisons"][0]))
-        # Friction that differs between the sizes does not follow from the sizes.
+        # In these two sweeps each size has another friction, but the user chose the friction, so it is a column.
         for size, friction in [("0.8 mm", "0"), ("1.6 mm", "0.3")]:
             self.sweep(*ARRAY, "preset=elastic", f"friction={friction}", output=f"{friction}.h5", diameter=size,
                        angle="20 deg")
@@ -388,7 +388,7 @@ class Sizes(LaboratoryTest):
         for point in found["curves"][0]["points"]:
             self.assertAlmostEqual(point["total_distance"], point["diameter_mm"] * groups[point["diameter_mm"]]["total_distance"])
         self.assertEqual(json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)["keys"], found["keys"])
-        # The same laboratory in other words gives the same curve, with the same points.
+        # The lab file has the same droplets in other words, so the curve and its points stay the same.
         self.assertIn("nothing left to do",
                       self.sweep(*keys, diameter="800 um, 1.0 mm, 1200 um, 0.16 cm", angle="20.0 deg").stderr)
         again = json.loads(self.succeed("clogfit", "curve", "s.h5", "--key", "diameter", "--format", "json").stdout)
@@ -498,7 +498,7 @@ class Sizes(LaboratoryTest):
 
 
 class Mixtures(LaboratoryTest):
-    """clogfit --mixture, with outcomes that the tests write into the rows."""
+    """Tests clogfit --mixture. The tests write the outcomes of runs into the rows."""
 
     SHARES = {0.8: 0.3, 1.6: 0.7}
     MIXTURE = ["--mixture", "diameter=0.8mm:3,1600 um:7"]
@@ -533,7 +533,7 @@ class Mixtures(LaboratoryTest):
 
     @staticmethod
     def outcomes(diameter, seed):
-        """The droplets of a seed travel about equally far, in units of their mean distances."""
+        """Divided by the mean distances of their sizes, the distances of all droplets of a seed are nearly equal."""
         common, own = np.random.default_rng(seed).exponential(), np.random.default_rng([seed, int(10 * diameter)]).random()
         way = {0.8: 4, 1.6: 9}[diameter] * (common + 0.1 * own)
         if seed in (3, 55):
@@ -619,15 +619,15 @@ class Mixtures(LaboratoryTest):
     def test_a_mixture_has_the_length_the_curve_and_the_intervals_of_numpy(self):
         self.rows("both.h5", "1..40", "0.8 mm, 1.6 mm", self.outcomes)
         shared = self.check("both.h5")
-        # The runs of a seed travel about equally far. If the outcomes are assigned to other seeds, chance acts on both
-        # groups independently, so the interval is narrower.
+        # Runs of the same seed have nearly equal relative distances, which makes the interval wide. If the two groups
+        # have different seeds, they scatter independently, and the interval is narrower.
         self.rows("small.h5", "1..40", "0.8 mm", self.outcomes)
         self.rows("large.h5", "101..140", "1.6 mm", lambda diameter, seed: self.outcomes(diameter, seed - 100))
         disjoint = self.check("small.h5", "large.h5")
         self.assertAlmostEqual(disjoint["clogging_length"], shared["clogging_length"])
         wide, narrow = (printed["clogging_length_upper"] - printed["clogging_length_lower"] for printed in (shared, disjoint))
         self.assertGreater(wide, 1.15 * narrow)
-        # Ten of the seeds are shared.
+        # The two files have ten seeds in common.
         self.rows("later.h5", "31..70", "1.6 mm", self.outcomes)
         self.check("small.h5", "later.h5")
 

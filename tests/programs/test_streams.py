@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 
 SMALL_SWEEP = [*QUICK, "seeds=1..3", "--verbose", "--output", "s.h5"]
-# All commands that print something and then end
+# All commands that end after they have printed something
 REPORTS = [["clogsweep", "--help"], ["clogsweep", "--version"], ["clogsweep", "--print-config"],
            ["clogsweep", *QUICK, "--dry-run"], ["clogsweep", "doctor"], ["clogsweep", "doctor", "--help"],
            ["clogsweep", "status", "done.h5"], ["clogsweep", "verify", "done.h5"],
@@ -195,8 +195,7 @@ class Alone(SweepTest):
         self.assertEqual(set(names.split()), {"clogsweep"})
 
     def test_it_needs_no_folder_for_its_own_files(self):
-        # Otherwise all such ranks of a user would share one folder. A rank would then fail if it started while another
-        # rank ends.
+        # All ranks of a user would share such a folder. A rank would fail if it started while another rank ended.
         done = subprocess.run([str(BIN / "clogsweep"), *QUICK, "--output", "s.h5"], cwd=self.folder,
                               env={**os.environ, "TMPDIR": "/proc"}, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)

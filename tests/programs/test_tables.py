@@ -15,7 +15,8 @@ from clogsweep.paper import runner
 from clogsweep.tools import tables
 from clogsweep.tools.errors import UserError
 
-# Errors that Excel and LibreOffice write in their languages: all that a reader lists, and some of each form.
+# Errors that Excel and LibreOffice write in several languages. The list has all errors that a reader knows by name, and
+# examples of the other forms.
 ERRORS = ["#N/A", "#DIV/0!", "#REF!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#SPILL!", "#WERT!", "#NV", "#BEZUG!", "#VALEUR!", "#NOM ?", "#¡REF!", "#N/D",
           "#AD?", "#ДЕЛ/0!", "#NA", "#N/B", "#I/T", "#Н/Д", "#YOK", "#HIÁNYZIK", "#GETTING_DATA", "Err:502", "Fehler:502", "Erreur:502", "####"]
 SEPARATORS = [",", ";", "\t", " "]
@@ -93,7 +94,8 @@ class Tables(Analysis):
             self.assertEqual((done.returncode, message in done.stderr), (2, True), done.stderr)
 
     def test_two_columns_of_one_quantity_are_refused_with_their_names_and_the_line(self):
-        # The second of two equal columns follows the first or comes last, with the same unit or another.
+        # Two columns have the same quantity. The second one is next to the first or comes last, and it has the same
+        # unit or another one.
         for name, read in self.readers_in_python().items():
             _, head, lines = self.READERS[name]
             for column, title in enumerate(head[:3]):
@@ -188,7 +190,7 @@ class Units(ProgramTest):
                 else:
                     self.refuse("clogsweep", f"obstacles={self.write('posts.csv', text)}", *OWN,
                                 words=[f"posts.csv line {place + 1}", "below circles", "above all circles"])
-        # Concatenated files have the same line twice.
+        # In concatenated files, the line with the units occurs again and again.
         self.assertEqual(self.circles(units + lines[0] + units + lines[1] + units + lines[2]), half)
         self.refuse("clogsweep",
                     f"obstacles={self.write('posts.csv', units + '# units=um droplet=3um' + chr(10) + self.CIRCLES)}",
@@ -216,7 +218,7 @@ class Points(ProgramTest):
         # Two points with missing values would be the same run.
         self.refuse("clogsweep", *QUICK, "seeds=1", "--points", self.write("p.csv", "\n".join([head, *cells]) + "\n"),
                     "--dry-run", words=["point 2 and point 4", "the same run"])
-        # In a table of several columns, a blank line is no row.
+        # In a table of several columns, a blank line is not a point.
         self.assertIn("# 2 tasks", self.plan(*QUICK, "--points", self.write("p.csv", "line-tension,seeds\n1,1\n\n2,1\n")))
 
     def test_decimal_commas_with_units_are_those_of_decimal_points(self):

@@ -18,15 +18,14 @@ from clogsweep import style  # noqa: E402
 from clogsweep.pages import report  # noqa: E402
 from clogsweep.tools import rounded  # noqa: E402
 
-# The droplets of Cheng et al. with their diameter, tilt and terminal speed, and with V_t and Gamma_exp as printed
-# there. V_t and Gamma_exp come with their uncertainties. An uncertainty is half of the last printed digit, or follows
-# from the digits of the quantities from which the number was computed. For instance, "v_t = 7 mm/s" may be wrong by one
-# part in fourteen.
+# The droplets of Cheng et al.: diameter, tilt, terminal speed, and the printed V_t and Gamma_exp, each with its
+# uncertainty. The uncertainty is half of the last printed digit of the number itself, or follows from the last digits
+# of the quantities in it. For instance, "v_t = 7 mm/s" may be wrong by one part in fourteen.
 ARTICLE = [("3.5 mm", "28 deg", "7 mm/s", (0.08, 0.006), (0.57, 0.01)),
            ("1.98 mm", "8.5 deg", "0.97 mm/s", (0.028, 5e-4), (5.80, 0.07)),
            ("3.30 mm", "5.0 deg", "1.1 mm/s", (0.032, 5e-4), (3.47, 0.05))]
 FITTED = [0.16, 1.7, 1.08]  # Gamma* of these three droplets in the article (Cheng et al.).
-TENSION = "9.6 mN/m"  # The article states "about 10 mJ/m^2". This value gives the printed Gamma_exp.
+TENSION = "9.6 mN/m"  # The printed Gamma_exp follows from this value. The article states "about 10 mJ/m^2".
 
 
 class Units(ProgramTest):

@@ -23,7 +23,7 @@ import time
 import h5py
 import numpy as np
 
-# The comparison excludes columns, attributes of the root ("@"), and checksums of such columns.
+# The comparison leaves out these columns, these attributes of the root ("@"), and the checksums of rows.
 CIRCUMSTANCES = {*(f"runs/{name}" for name in ("wall_seconds", "processor_seconds", "rank", "host", "attempt")), "row_checksums",
                  *(f"@{name}" for name in ("version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "checksums",
                                            "start_time", "command_line", "sessions", "activity", "parts"))}

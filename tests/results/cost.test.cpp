@@ -87,8 +87,8 @@ TEST(SweepCost, CountsWhatComesBeforeTheFirstStep) {
 }
 
 TEST(SweepCost, WeighsRunsByWhatTheyMayCost) {
-  // Half of the sweep's runs cost ten times as much as the others. The estimate weights the runs by their
-  // bounds, whichever fraction of each kind was sampled.
+  // Half of the sweep's runs cost ten times as much as the others. The estimate weights the sampled runs by
+  // their bounds, so it does not depend on how many runs of each kind were sampled.
   const std::vector<RunCost> sample = {finished(1, 10), finished(10, 100)};
   EXPECT_NEAR(sweep_cost(sample, 110 * 50 / seconds_per_work, 100).expected, 550, 1e-9);
 }
@@ -118,7 +118,8 @@ TEST(CostLeft, HasWhatUnfinishedRunsStillTake) {
   for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
   begun.push_back(of_set(1, unfinished(0.4, 100)));
   const SweepCost left = cost_left(begun, {});
-  // The remaining run is short, and its cost is estimated from the other short runs.
+  // The only unfinished run belongs to the set with short runs, so its cost follows from the runs of this
+  // set.
   EXPECT_GT(left.expected, 0.2);
   EXPECT_LT(left.expected, 2);
   EXPECT_GT(left.upper, left.expected);
@@ -196,9 +197,9 @@ double coverage(int num_sets) {
 }
 
 TEST(SweepCost, CoversTheTruthWhereShortAndLongRunsMix) {
-  EXPECT_GT(coverage(1), 0.8);   // The only set has the mixture.
-  EXPECT_GT(coverage(3), 0.9);   // Each kind of run is a set.
-  EXPECT_GT(coverage(24), 0.9);  // One run of each set is known.
+  EXPECT_GT(coverage(1), 0.8);   // There is one set, which contains all kinds of runs.
+  EXPECT_GT(coverage(3), 0.9);   // There is one set for each kind of run.
+  EXPECT_GT(coverage(24), 0.9);  // There are so many sets that only one run of each is known.
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 namespace clog::results {
 
 /// Makes a row that fault_of() accepts. The droplet moved over `distance` at its terminal speed, and then its
-/// run ended. If the status is flowing, the droplet has rested there since. With break-up=daughters, it has
-/// clogged without breaking up.
+/// run ended. If the status is flowing, the droplet rested there until max-time. With break-up=daughters, the
+/// table of droplets has only the ancestor, which clogged.
 /// @param distance  [sigma]
 inline void end_run(sweep::RunRow& row, RunStatus status, double distance) {
   row.status = status;

@@ -47,7 +47,7 @@ TEST(Families, CountEachPartOfTheAreaOnce) {
   EXPECT_EQ(found.clogged.numbers[14], 1);  // 0.707
 }
 
-/// Nobody knows how far a droplet would have gone whose run failed.
+/// If the run of a droplet failed, the rest of its path is unknown.
 TEST(Families, CountTheAreaOfAFailedDaughterAsNotKnown) {
   std::vector<Member> members = family();
   members[1].status = MemberEnd::failed;  // the half that ends at 40
@@ -66,7 +66,8 @@ TEST(Families, HaveNoLineBeyondTheFarthestDroplet) {
   EXPECT_TRUE(families_of(families, 0.95).lines.empty());
 }
 
-/// Without break-up, areas are 1, and the share that passes equals the estimate of Kaplan and Meier.
+/// Without break-up, each family has one droplet, and the fraction of the area that passes a line equals the
+/// estimate of Kaplan and Meier.
 TEST(Families, ThatDoNotBreakUpGiveTheProductLimitEstimate) {
   std::vector<ReleasedFamily> families;
   std::vector<fit::Observation> runs;

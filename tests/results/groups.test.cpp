@@ -16,8 +16,8 @@ bool is_doubted(const Group& group) {
   return std::ranges::find(group.doubts, Doubt::not_exponential) != group.doubts.end();
 }
 
-/// Twelve clogs that are Weibull-distributed with the exponent 1.6: p = 0.042 (SciPy, likelihood
-/// ratio).
+/// Twelve clogs that follow a Weibull law with the exponent 1.6. The likelihood-ratio test against an
+/// exponential law has p = 0.042 (SciPy).
 std::vector<sweep::RunRow> clogged_runs(RunParameters run) {
   constexpr double distances[] = {1.4, 2.8, 4.0, 5.1, 6.2, 7.4, 8.6, 9.9, 11.4, 13.2, 15.8, 20.6};
   std::vector<sweep::RunRow> rows;
@@ -48,7 +48,7 @@ TEST(Groups, OfTheSameRunsInTwoLaboratoriesAreOneTest) {
   ASSERT_EQ(copied.size(), 2u);
   EXPECT_TRUE(is_doubted(copied[0]));
   EXPECT_TRUE(is_doubted(copied[1]));
-  // Two groups of different runs are two tests. So Holm's p is 0.083.
+  // Two groups of different runs are two tests, so Holm's correction gives p = 0.083.
   RunParameters other = run;
   other.obstacles.gap = 0.4;
   rows = clogged_runs(run);

@@ -1,5 +1,5 @@
-/// Checks that two values of any parameter give two different runs. So the code that compares, groups, lists
-/// or shares runs cannot overlook a parameter.
+/// For each parameter, checks that code which compares, groups, lists or shares runs distinguishes two values
+/// of the parameter.
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -99,7 +99,8 @@ sweep::Plan plan_of_both(const Parameter& parameter) {
   return sweep::Plan(settings);
 }
 
-/// The two runs. The runs come from two sweeps, because a list of values cannot contain words.
+/// Two runs that differ in the parameter. The runs come from two sweeps, because a list of values cannot
+/// contain words.
 std::vector<RunParameters> both_runs(const Parameter& parameter) {
   sweep::Settings settings = settings_for(parameter);
   const RunParameters one = sweep::Plan(settings).task(0);
@@ -144,8 +145,8 @@ TEST_P(EveryKey, MakesTwoGroups) {
   EXPECT_EQ(group_runs(rows, 0.95).size(), GetParam().role == ParameterRole::ensemble ? 1u : 2u);
 }
 
-/// A sweep over four values of another parameter and two values of this one has two curves. A comparison of
-/// these two values names this parameter.
+/// A sweep over four line tensions and two values of the parameter must have two curves. A comparison of the
+/// two curves must name the parameter.
 TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   const Parameter& parameter = GetParam();
   if (parameter.role != ParameterRole::physics || parameter.key == std::string("line-tension")) return;
@@ -177,9 +178,9 @@ TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
 }
 
-/// ObstacleArrays keeps the walls of the last run. In a device with side walls the walls depend on the
-/// droplet's reach, because the reach limits where droplets may start. So a run with another droplet must get
-/// separate walls.
+/// ObstacleArrays keeps the walls of the last run for the next run. The walls of a device with side walls
+/// depend on the droplet's reach, because the reach limits where droplets may start. If the next run has
+/// another droplet, it must get new walls.
 TEST_P(EveryKey, LeavesTheNextRunOfADeviceItsOwnWalls) {
   sweep::Settings settings;
   settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));

@@ -20,17 +20,18 @@ auto statuses(const std::function<bool(std::int64_t task)>& has_clogged) {
 }
 
 TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
-  // In one of two parameter sets every droplet clogs, and in the other every fourth. A precision of 60 %
-  // requires 14 clogs.
+  // In one of two parameter sets every droplet clogs, and in the other set every fourth droplet clogs. A
+  // precision of 60 % requires 14 clogs.
   const auto has_clogged = [](std::int64_t task) { return task % 2 == 0 || task / 2 % 4 == 3; };
   SeedRule rule(0.6, 2, 16, 100);
   const std::vector<std::int64_t> next = rule.next_round(statuses(has_clogged));
   EXPECT_EQ(rule.num_reached(), 1);
-  // The set has only 16 runs, so no more are added, although 4 clogs of 16 require 40 more.
+  // With 4 clogs in 16 runs, 40 more runs are required. A round at most doubles the runs of a set, so the
+  // first round adds 16.
   ASSERT_EQ(next.size(), 16u);
   for (std::size_t i = 0; i < next.size(); ++i) EXPECT_EQ(next[i], 2 * (16 + static_cast<int>(i)) + 1);
   EXPECT_EQ(rule.next_round(statuses(has_clogged)).size(),
-            24u);  // 8 of 32 runs clogged, so 56 seeds are needed
+            24u);  // With 8 clogs in 32 runs, 56 runs are required.
   EXPECT_TRUE(rule.next_round(statuses(has_clogged)).empty());
   EXPECT_EQ(rule.num_reached(), 2);
 }
@@ -70,7 +71,7 @@ TEST(SeedRule, AddsNoSeedsWhereAllRunsFail) {
     for (const std::int64_t task : next) EXPECT_EQ(task % 2, 1);
   }
   EXPECT_EQ(num_rounds, 1);
-  EXPECT_EQ(num_added, 12u);  // 8 of 16 runs clogged, so 14 clogs require 28
+  EXPECT_EQ(num_added, 12u);  // With 8 clogs in 16 runs, 28 runs are required.
   EXPECT_EQ(outcome(sweep.rule, sweep::Plan(sweep.settings)),
             "1 of 2 parameter sets reached --until-precision=60 %; not: line_tension=0.2 with 0 clogs of 16 "
             "seeds, 16 failed (it takes 14 clogs); give more --most-seeds, or a longer max-time");

@@ -23,8 +23,8 @@
 
 namespace {
 
-/// Another user moves a file onto the sweep's file, just after the sweep's file was renamed and its folder
-/// was synchronised.
+/// Simulates another user who moves a file onto the sweep's file. The move takes place when the program
+/// synchronises the folder after it has renamed the sweep's file.
 struct Move {
   std::filesystem::path from, to;
 };
@@ -56,7 +56,8 @@ int our_fsync(int descriptor) {
 namespace clog::results {
 namespace {
 
-/// A sweep of two runs. Its state is opened repeatedly, as if the sweep had been killed.
+/// Tests the state of a sweep of two runs. The tests open the state repeatedly, as if the sweep had been
+/// killed and resumed.
 class SweepStateTest : public testing::Test {
  protected:
   std::filesystem::path folder_ =

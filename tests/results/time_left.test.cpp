@@ -23,7 +23,8 @@ TEST(TimeLeft, IsThatOfTheParameterSetsThatWait) {
   sets[1].num_waiting = 40;
   const TimeLeft left = time_left(sets, 2);
   EXPECT_TRUE(left.is_known);
-  // The 80 % interval is a factor of 1.292 wide on both sides, because 1.2816/sqrt(25) = 0.2563 = log(1.292).
+  // The ends of the 80 % interval differ from the mean by a factor of 1.292, because
+  // log(1.292) = 1.2816/sqrt(25).
   EXPECT_NEAR(left.shortest, 20 / 1.292, 0.01);
   EXPECT_NEAR(left.longest, 20 * 1.292, 0.01);
 }

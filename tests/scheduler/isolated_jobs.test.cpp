@@ -1,5 +1,5 @@
-/// Tests tasks that crash their process, under the scheduler and on any number of ranks. Exits with 1 on the
-/// first fault.
+/// Tests that the scheduler handles tasks that crash their process, on any number of ranks. Exits with 1 on
+/// the first fault.
 
 #include "clog/scheduler/isolated_jobs.hpp"
 
@@ -69,7 +69,7 @@ class CrashingJob final : public SyntheticJob {
     }
     if (getpid() != rank_pid && task >= first_task_that_kills_the_helper) {
       kill(getppid(), SIGKILL);
-      while (true) pause();  // the process ends with the helper, before it can end its task
+      while (true) pause();  // This process ends because its helper has ended, and the task has no result.
     }
     if (task >= first_hanging_task && task < first_task_that_kills_the_helper) std::raise(SIGSTOP);
     if (task >= first_slow_task && task < first_hanging_task)
@@ -132,7 +132,7 @@ void a_crash_fails_its_task_and_no_other(const scheduler::Communicator& ranks,
     expect(!of_rank.contains(getpid()), "no rank computes itself");
     num_processes += of_rank.size();
   }
-  // Every task that crashes is tried twice, and once more if its rank may be at fault.
+  // A task that crashes is tried twice. If its rank may be the cause, the task is tried once more.
   expect(num_processes <= ranks.size() + 3 * crashes.size(), "a process serves many tasks");
 }
 

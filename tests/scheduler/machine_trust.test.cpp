@@ -19,7 +19,7 @@ Names set_aside_by_success(MachineTrust& trust, std::int64_t task, int rank) {
   return names;
 }
 
-/// The tasks that others should try after a failure.
+/// The tasks that other machines should try after this failure.
 Tasks in_doubt(MachineTrust& trust, std::int64_t task, int rank) {
   const auto suspect = trust.failed(task, rank, "");
   return suspect ? suspect->tasks : Tasks();

@@ -14,7 +14,7 @@ inline TaskOrder order_of(const std::vector<std::int64_t>& tasks, std::int64_t n
   order.add(tasks);
   return order;
 }
-/// The same order for the tasks 0, 1, 2 and so on.
+/// An order of the tasks 0, 1, ... num_tasks - 1.
 inline TaskOrder order_of(std::int64_t num_tasks, std::int64_t num_groups = 1) {
   std::vector<std::int64_t> tasks(num_tasks);
   std::iota(tasks.begin(), tasks.end(), std::int64_t{0});

@@ -141,8 +141,8 @@ void failed_tasks_are_tried_again(const scheduler::Communicator& ranks) {
 }
 
 void what_fails_everywhere_is_tried_once(const scheduler::Communicator& ranks) {
-  // Half of the tasks cross themselves or diverge. These are results: there is no second attempt, and no rank
-  // is at fault.
+  // The droplets of half of the tasks cross themselves or diverge. Such a failure is a result: there is no
+  // second attempt, and no rank is at fault.
   const auto make_job = [](std::int64_t task, std::span<const std::byte>) {
     return std::make_unique<FailingJob>(task, task % 2 == 0,
                                         task % 4 == 0 ? FailedBy::crossing : FailedBy::divergence);
@@ -177,7 +177,7 @@ sweep::JobFactory failing_on(const scheduler::Communicator& ranks,
 /// The results on rank 0 of a sweep with broken ranks.
 struct Outcome {
   scheduler::SweepEnd end;
-  std::map<std::int64_t, std::string> status;     // by task
+  std::map<std::int64_t, std::string> status;     // Status in the row of each task.
   std::map<std::int64_t, std::int64_t> attempts;  // Attempts that count, by task.
   std::map<std::int64_t, int> starts;
   std::set<int> set_aside;  // numbers of hosts
@@ -268,7 +268,7 @@ void who_was_set_aside_stays_so_in_the_next_round(const scheduler::Communicator&
 }
 
 void most_ranks_may_be_broken(const scheduler::Communicator& ranks) {
-  // Each task has only one attempt. So failures on broken ranks must not count as attempts.
+  // Each task has only one attempt, so all tasks can succeed only if failures on broken ranks do not count.
   const auto make_job = failing_on(
       ranks, [](int rank) { return rank > 0; }, never);
   const Outcome outcome = sweep(ranks, 60, 1, make_job);

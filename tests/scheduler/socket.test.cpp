@@ -34,8 +34,8 @@ TEST(Socket, GivesNothingOfADeadProcess) {
 }
 
 TEST(Socket, SendsAMessageInOnePiece) {
-  // A stopped process has sent either its whole message or nothing. This kind of socket keeps separate
-  // messages apart.
+  // A message is sent in one piece, so that a process cannot be stopped in the middle. A SOCK_SEQPACKET
+  // socket shows the pieces, because recv() never joins two of them.
   int ends[2];
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends), 0);
   const Socket ours(ends[0]), theirs(ends[1]);

@@ -17,8 +17,8 @@ enum class Ending {
 };
 const char* name(Ending ending);
 
-/// Judges the end of a run from measurements over a window of time. The ending is the first of these with a
-/// fulfilled condition:
+/// Judges the end of a run from measurements over a window of time. The ending is the first in this list
+/// whose condition is fulfilled:
 ///   moving      mean_speed > slowest_travel
 ///   decaying    fall > least_fall, and the last quarter of the window is not above the third
 ///   chattering  coherence < least_coherence: vertices move a much shorter distance than their speed permits
@@ -29,7 +29,7 @@ struct Tail {
   double fall = 0;        ///< Fall of the median of log10(E_k/E_t) from the first quarter to the last.
   double last_fall = 0;   ///< Fall of this median from the third quarter to the last.
   double band = 0;        ///< Width of log10(E_k/E_t) in the last quarter: 95 % minus 5 % quantile.
-  /// The path of the vertices between two samples, divided by the path that follows from E_k.
+  /// How far vertices get between two places, divided by the length of their path, which follows from E_k.
   double coherence = 0;
 
   Ending ending() const;
@@ -44,10 +44,10 @@ class TailRecorder {
  public:
   explicit TailRecorder(double terminal_speed) : terminal_speed_(terminal_speed) {}
 
-  /// Call this at equal intervals. @param interval  their length [t0]
+  /// Adds E_k/E_t. Call this at equal intervals. @param interval  time between two calls [t0]
   void add_energy(double energy_ratio, double interval);
-  /// Call this once before add_energy(). After that call it less often, at intervals of many relaxation times
-  /// V_t/g.
+  /// Adds the positions of the vertices. Call this before the first add_energy(), and then at intervals of
+  /// many relaxation times V_t/g.
   void add_place(const DropletState& state);
   /// The tail, or nothing if there were too few samples.
   std::optional<Tail> tail() const;
@@ -56,9 +56,9 @@ class TailRecorder {
   double terminal_speed_;
   std::vector<double> log_energy_;
   double time_ = 0;
-  double expected_way_ = 0;      // Expected path since the last place [sigma].
-  double sum_expected_way_ = 0;  // Expected path until the last place [sigma].
-  // Root mean square path of the vertices, summed over the intervals between places [sigma].
+  double expected_way_ = 0;      // Length of path that follows from E_k, since the last place [sigma].
+  double sum_expected_way_ = 0;  // The same length up to the last place [sigma].
+  // Root mean square displacement of the vertices between two places, summed over all places [sigma].
   double sum_way_ = 0;
   std::optional<DropletState> first_, last_;
 };

@@ -12,9 +12,9 @@ struct Findings {
   /// Depth of an obstacle's surface inside the interface [vertex diameters]. For meshes finer than 128
   /// vertices, the unit is the vertex diameter of 128 vertices.
   double overlap = 0;
-  double area_error = 0;  ///< relative error of the area, |area/rest area - 1|
-  double edge_ratio = 1;  ///< Longest over shortest edge.
-  double perimeter = 0;   ///< perimeter, in units of that of a circle
+  double area_error = 0;  ///< Relative error of the area, |area/rest area - 1|.
+  double edge_ratio = 1;  ///< Length of the longest edge divided by that of the shortest edge.
+  double perimeter = 0;   ///< Perimeter divided by the perimeter of a circle.
   double shape = 1;       ///< Shape parameter.
   /// Number of parts into which a time step is split, averaged over the interval between two checks.
   double substeps = 1;
@@ -30,9 +30,9 @@ inline constexpr double largest_area_error = 0.05;
 
 bool is_sound(const Findings& findings);
 
-/// Checks every edge of the refined interface (see refined()) against every obstacle near the droplet. The
-/// contact lists of the forces are not used, so obstacles that these lists lack are found, too. `substeps`
-/// keeps its default.
+/// Measures a droplet. Every edge of the refined interface (see refined()) is compared with every obstacle
+/// near the droplet. This does not use the contact lists of the forces, so it also finds obstacles that are
+/// missing in these lists. `substeps` keeps its default.
 Findings look_at(const DropletState& state, const ObstacleArray& obstacles);
 
 }  // namespace clog::soundness

@@ -53,7 +53,7 @@ The exit code is 0 when all were sound, 1 when one was not, 75 when it was stopp
 /// Number of checks of a run between two examinations of its droplet. These checks take 2 t0 at the default
 /// time step.
 constexpr int checks_per_look = 32;
-/// Length of the last part of a run, as a fraction of the run. The ending of the run is judged in this part.
+/// The ending of a run is judged in the last part of the run, which is this fraction of max-time.
 constexpr double tail_part = 0.2;
 
 /// CPU time of this thread [s], which excludes other work on the machine.
@@ -316,7 +316,7 @@ void write_runs(std::ofstream& out, const std::string& path, const std::vector<C
 }
 
 /// The cases in the order of their expected duration, longest first. Runs with small line tension and narrow
-/// gaps take longest: the droplet is stretched, and its steps are split.
+/// gaps take longest, because the steps of a stretched droplet are split.
 std::vector<std::size_t> longest_first(const std::vector<CaseReport>& reports) {
   std::vector<std::size_t> order(reports.size());
   std::iota(order.begin(), order.end(), 0);
@@ -344,8 +344,7 @@ void do_all(std::vector<CaseReport>& reports, unsigned num_threads, DoCase do_ca
   });
 }
 
-/// Plans releases. Release k has the parameters of the group k modulo the number of groups, and the seed k +
-/// 1.
+/// Plans releases. The parameter sets take turns, and release k has the seed k + 1.
 std::vector<CaseReport> planned_releases(const sweep::Plan& plan, std::int64_t num_releases) {
   std::vector<CaseReport> reports(num_releases);
   for (std::int64_t k = 0; k < num_releases; ++k) {

@@ -89,7 +89,7 @@ TEST(Ending, IsMovingWhenTheCentreTravelsAcrossFrames) {
   const Tail tail =
       tail_of([](DropletState& state, double time) { state.x() += 0.03 * time; }, [](double) { return 1.0; });
   EXPECT_EQ(tail.ending(), Ending::moving);
-  // The tolerance is needed because no place was added at the end of the last interval.
+  // The last place was added before the last interval, so the speed is not exact.
   EXPECT_NEAR(tail.mean_speed, 1, 0.05);
   EXPECT_NEAR(tail.coherence, 1, 1e-6);
 }
@@ -118,7 +118,8 @@ TEST(Ending, IsChatteringWhenVerticesShakeAboutTheirPlaces) {
   const auto shake = [&](DropletState& state, double) {
     for (double& value : state.position) value += 1e-6 * scatter(engine);
   };
-  // At 1e-2 V_t, a vertex would move by 6e-4 between two places.
+  // The energy corresponds to a speed of 1e-2 V_t. A vertex with this speed would move by 6e-4 between two
+  // places.
   const Tail tail = tail_of(shake, [&](double) { return 1e-4 * std::pow(10, scatter(engine)); });
   EXPECT_EQ(tail.ending(), Ending::chattering);
   EXPECT_GT(tail.band, 1);

@@ -268,7 +268,7 @@ TEST_F(RunTableTest, SaysWhatIsWrongWithAFile) {
       << "it does not wait";
 }
 
-/// The same file with one bit flipped.
+/// Flips one bit of a file's content.
 std::string flipped(std::string content, std::size_t byte) {
   content[byte] = static_cast<char>(content[byte] ^ (1 << byte % 8));
   return content;
@@ -328,8 +328,8 @@ TEST_F(RunTableTest, LosesNoAttributeByADamagedListOfChecksums) {
       std::string damaged = content;
       damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << bit));
       write_text("damaged.h5", damaged);
-      // Some flipped bits do not change the content: bits between digits and name, and bits that change the
-      // case of a letter in a hexadecimal number.
+      // Two kinds of flipped bits leave the list valid: bits of the blank between digits and name, and bits
+      // that change the case of a letter in a hexadecimal number.
       try {
         EXPECT_EQ(read_sweep(path("damaged.h5")).provenance, read_sweep(path()).provenance)
             << byte << ' ' << bit;

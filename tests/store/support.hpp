@@ -54,8 +54,9 @@ inline void publish(const std::string& path, const std::vector<sweep::RunRow>& r
   publish_sweep(place, place.stamp(), {rows, provenance, circles});
 }
 
-/// Simulates a full disk by a limit on the size of files. So it must run in a separate process. If the action
-/// throws an Error, its text is printed on the error stream, and the process exits with 2.
+/// Simulates a full disk by a limit on the size of files. Call this in a separate process, because the
+/// process exits: with 2 if the action throws an Error, whose text is printed on the error stream, and with 0
+/// otherwise.
 [[noreturn]] inline void run_on_full_disk(rlim_t num_bytes, const std::function<void()>& action) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before;

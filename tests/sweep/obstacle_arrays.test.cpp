@@ -58,8 +58,8 @@ void expect_identical(const ObstacleArray& one, const ObstacleArray& other) {
   EXPECT_TRUE(std::ranges::equal(one.binned().cell_start, other.binned().cell_start));
 }
 
-/// The device and the inode of the file that is mapped at an address, as the kernel prints them. For memory
-/// of the process itself they are "00:00 0".
+/// The device and the inode of the file that is mapped at an address, as the kernel prints them. Memory of
+/// the process itself has "00:00 0".
 std::string file_behind(const void* address) {
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
@@ -83,8 +83,8 @@ int num_sockets(pid_t process) {
   return number;
 }
 
-/// Another process. The process works and reports. Then it waits until the test kills it, so it cannot clean
-/// up.
+/// A child process that works, reports, and then waits until the test kills it. In this way the process
+/// cannot clean up.
 class OtherProcess {
  public:
   /// @param work  returns the text that the process reports
@@ -244,12 +244,14 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
   get_and_signal(arrays, start_and_stop_builder(), SIGKILL);
   EXPECT_EQ(arrays.num_built(), 1);
 
-  // The next array would be complete later, but this process does not wait for it.
+  // After it has waited in vain, this process builds the next arrays itself, although their builder would
+  // finish them later.
   arrays.get(run_in(small, 1));
   get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
   EXPECT_EQ(arrays.num_built(), 3);
 
-  // An existing shared array is still found. After that, the process waits for other processes again.
+  // The process still finds a shared array that exists already. After it has found one, it waits for other
+  // processes again.
   ObstacleArrays other;
   other.get(run_in(large, seed));
   arrays.get(run_in(large, seed));
@@ -278,8 +280,9 @@ TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
   const OtherProcess without_files([seed = own_seed()] {
     rlimit usual;
     getrlimit(RLIMIT_NOFILE, &usual);
-    // The thread must begin before the limit is set, because sanitizers open a file to inspect a new thread.
-    // If the process waited until the limit was lifted, it would find the array.
+    // A thread lifts the limit after half a second. If the process waited that long, it would find the array
+    // of the other process. The thread must begin before the limit is set, because sanitizers open a file to
+    // inspect a new thread.
     std::atomic<bool> has_begun = false;
     std::thread later([&] {
       has_begun = true;
@@ -314,8 +317,8 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
   const auto take = [&](bool as_another) {
     return std::make_unique<OtherProcess>([&name, as_another] {
       static const NameLock lock(name);
-      // /proc shows whether a process belongs to another user. Without root the test cannot start a process
-      // of another user. But the test can make its own process look like a process of another user.
+      // /proc shows whether a process belongs to another user. Only root can start a process of another user.
+      // Without root the test makes its own process look like a process of another user.
       const bool is_root = geteuid() == 0;
       constexpr uid_t nobody = 65534;
       if (as_another && is_root && setuid(nobody) != 0) return std::string("cannot become another");
@@ -334,8 +337,7 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
 }
 
 TEST(RunJob, GivesTheSameRowInASharedArray) {
-  // A droplet of this run travels far among obstacles. The outcome of the run does not depend on the last
-  // bits.
+  // The droplet of this run travels far among obstacles, and rounding errors do not change its final state.
   const Plan plan(settings_of({{"line-tension", "0.1"},
                                {"obstacle-density", "1"},
                                {"vertices", "64"},

@@ -144,7 +144,7 @@ TEST(FaultOf, NamesPlacesOfReleaseThatVersion10GotWrong) {
     row.release[0] = x;
     return fault_of(row);
   };
-  // Places of a sweep of 1.0: circle 2.5,2.5,2 in box=5 with release=anywhere.
+  // The values of x are from a sweep by version 1.0, with the circle 2.5,2.5,2, box=5 and release=anywhere.
   for (const double x : {10.005285169751458, 9.5099, -2.6}) {
     EXPECT_NE(
         fault_at(11, x).find("is a period away from where the droplet started, an error of clogsweep 1.0"),
@@ -176,7 +176,7 @@ TEST(FaultOf, NamesWhatBelongsToAnotherScene) {
   EXPECT_NE(fault_of(row).find("invalid orifice=0.001"), std::string::npos);
 }
 
-/// The fault of a row after another value was written to one of its columns.
+/// Writes a value into a column of a row. @return the fault of the changed row
 template <class T>
 std::string fault_with(const Column& column, T value) {
   const RunRow& row = row_with(column);

@@ -191,8 +191,8 @@ TEST(ObstacleSpacing, IsFromCentreToCentre) {
 
 TEST(ObstacleSpacing, OfOwnCirclesFollowsFromHowManyThereAre) {
   Settings settings;
-  // Four circles in a box of 8 x 8. Two of them are close to each other. None is as wide as
-  // obstacle-diameter.
+  // With four circles in a box of 8 x 8, the spacing is 4, whatever the places and diameters of the circles
+  // are.
   settings.attach("posts.csv", OwnCircles({{1, 1, 0.2}, {2, 1, 0.2}, {5, 3, 0.2}, {3, 6, 0.2}}, "posts.csv"));
   settings.set("obstacles", "posts.csv");
   settings.set("box", "8");

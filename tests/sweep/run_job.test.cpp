@@ -87,9 +87,9 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   EXPECT_GT(num_failed, 0);
 }
 
-/// A snapshot of the task in which `change` has changed the numbers of the dwells. These numbers are a
-/// length, a distance and a beginning for each of eight dwells. The last number is the smallest duration of
-/// dwells that are known.
+/// A snapshot of a run in which `change` has changed the dwells. The dwells are an array of numbers: a
+/// length, a distance and a beginning for each of eight dwells, and then the smallest duration of known
+/// dwells.
 template <class Change>
 std::vector<std::byte> changed_snapshot(const RunParameters& run, Change change) {
   RunJob job(run, 0);

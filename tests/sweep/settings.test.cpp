@@ -34,7 +34,8 @@ TEST(Settings, DefaultsAreThoseOfTheParameters) {
   }
 }
 
-/// The ratio of a preset's springs must not be stored for other springs, or beside a given stiffness.
+/// A preset sets perimeter-stiffness-ratio. The config must not contain the preset's ratio if the user chose
+/// other springs or gave a stiffness.
 TEST(Settings, AreReadBackForEveryPresetWithOtherSprings) {
   for (const std::string& preset : preset_names())
     for (const auto& [key, text] : {std::pair{"perimeter-spring", "mean"},
@@ -169,7 +170,7 @@ TEST(Settings, ReadBackNamesOfFilesWithAnyByte) {
       EXPECT_EQ(unescaped(escaped(text)), text) << byte;
       EXPECT_EQ(escaped(text).find_first_of(std::string_view("\n\r\0#", 4)), std::string::npos) << byte;
       Settings settings;
-      // This text is no list of files.
+      // Such texts are not lists of files.
       if (one == "," || text.find_first_not_of(" \t") == std::string::npos) continue;
       settings.set("obstacles", text);
       const std::string file = settings.values("obstacles").front();

@@ -24,7 +24,7 @@ using List = std::vector<std::string>;
 
 List numbers(std::string_view text) { return expand_list(text, ValueKind::number, {"auto"}); }
 
-/// Expands the list, and joins its values with blanks; the message after ! if the list is refused.
+/// The values of the list, joined with blanks. For a list that is refused, the error message after "!".
 std::string meaning_of(const std::string& list, ValueKind kind) try {
   return joined(expand_list(list, kind, {}), " ");
 } catch (const Error& error) {
@@ -152,7 +152,8 @@ TEST(Shortest, IsNoLongerThanAnyTextThatReadsBack) {
   }
 }
 
-/// These texts are a part of the identity of rows. So other texts would mean other runs.
+/// These texts are a part of the identity of rows. If the texts changed, existing rows would count as other
+/// runs.
 TEST(Shortest, IsWrittenAsPeopleDo) {
   const std::pair<double, const char*> texts[] = {{0, "0"},
                                                   {-0.0, "-0"},

@@ -62,8 +62,8 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
 
 
 def trend(is_as_published: bool, is_opposite: bool) -> str:
-    """The verdict on a curve, or on two points. A curve may have clear differences of both kinds at different points:
-    as published, and opposite. Without a clear difference the verdict is NOT_KNOWN."""
+    """The verdict on a curve, or on two points. Some points of a curve may clearly differ as published, and others in
+    the opposite way: the verdict is then IN_KIND. Without a clear difference the verdict is NOT_KNOWN."""
     return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
 
 
@@ -79,8 +79,9 @@ def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callabl
 
 
 def overall(verdicts: Sequence[str]) -> str:
-    """One verdict for several curves: their common verdict, if they have one. If the curves have different verdicts, it
-    is NOT_KNOWN if more than half of them are NOT_KNOWN, else DOES_NOT if no curve is as published, else IN_KIND."""
+    """One verdict for several curves: their common verdict, if they have one. For curves with different verdicts the
+    result is NOT_KNOWN if more than half of the curves are NOT_KNOWN, DOES_NOT if all others are DOES_NOT, and IN_KIND
+    in all other cases."""
     if len(set(verdicts)) == 1:
         return verdicts[0]
     if not verdicts or 2 * list(verdicts).count(NOT_KNOWN) > len(verdicts):

@@ -21,8 +21,8 @@ CONFIDENCE = 0.95
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
-    """The highest point among those points that are clearly above some point on their left and some point on their
-    right."""
+    """The peak of a curve, or None. A point can be the peak only if it is clearly above at least one point on each
+    side. The peak is the highest of these points."""
     found = [point for i, point in enumerate(curve)
              if any(shorter(other, point) for other in curve[:i])
              and any(shorter(other, point) for other in curve[i + 1:])]
@@ -74,9 +74,9 @@ def peak_moves(groups: list[Group]) -> Finding:
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
-    """The range of line tensions in which squeezed clogs replace wrapped clogs. It begins at the largest line tension
-    at which more clogs are wrapped than squeezed. It ends at the next line tension at which more clogs are squeezed
-    than wrapped."""
+    """The range of line tensions in which squeezed clogs replace wrapped clogs. The range begins at the largest line
+    tension at which more clogs are wrapped than squeezed, and ends at the next line tension at which more clogs are
+    squeezed than wrapped."""
     wrapped = max((point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]), default=math.inf)
     squeezed = [point["line_tension"] for point in curve
                 if point["squeezed"] > point["wrapped"] and point["line_tension"] > wrapped]
@@ -113,7 +113,7 @@ def two_mechanisms(groups: list[Group]) -> Finding:
     return Finding(overall(verdicts), ", ".join(counted))
 
 
-LEAST_HELP = 0.01  # A neighbour that bears a smaller fraction of the support does not help.
+LEAST_HELP = 0.01  # A neighbouring obstacle that bears a smaller fraction of the support does not count.
 
 
 def neighbours_support(runner: Runner, family: Family) -> Finding:
@@ -267,7 +267,7 @@ def disks_diverge(runner: Runner) -> Finding:
                                                 for group in softest))
 
 
-LONG = 1e4  # A length beyond this is 1e4 to 1e5 times that of stiff droplets.
+LONG = 1e4  # Longer lengths are 1e4 to 1e5 times the length of stiff droplets.
 APART = 0.25  # Largest sag at which the models agree, according to the article.
 ALIKE = 2.0  # Two lengths are alike if their ratio is at most this.
 
@@ -279,8 +279,8 @@ def over_the_sag(runner: Runner, config: str, groups: Sequence[Group]) -> list[t
 
 def compared(runner: Runner, family: Family, is_beyond: bool) -> Finding:
     """Compares the lengths of polygons with those of disks that have the same sag. With `is_beyond` the sags are larger
-    than APART, and the lengths should differ. Otherwise the sags are smaller, and the lengths should agree. Lengths
-    agree if their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound
+    than APART, and the lengths should differ. Without `is_beyond` the sags are smaller, and the lengths should agree.
+    Lengths agree if their intervals overlap, or if their ratio is at most ALIKE. If no droplet clogged, the lower bound
     replaces the length."""
     disks = over_the_sag(runner, "clogging-sp", runner.sweep("clogging-sp"))
     logs = [math.log(sag) for sag, _ in disks]

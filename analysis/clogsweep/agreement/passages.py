@@ -1,5 +1,5 @@
 """Judges statements of the article (Cheng et al.), section 4.1 and appendices A and B: on measured quantities and on
-passages through channels. Nothing in such a passage is random, so there are no confidence intervals."""
+passages through channels. Nothing in a passage through a channel is random, so there are no confidence intervals."""
 
 import math
 from typing import Any
@@ -14,7 +14,8 @@ from .evidence import by_tolerance
 from .verdicts import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 
 
-# The largest deviation Delta_A of a published simulation from its experiment, as an error of the shape parameter.
+# Error of the published shape parameters. The published simulations deviate from their experiments by a Delta_A of up
+# to this value.
 PUBLISHED_ERROR = 0.01
 
 
@@ -92,9 +93,8 @@ def drag_exponent(runner: Runner) -> Finding:
 
 
 def profiles_are_smooth(runner: Runner) -> Finding:
-    """Compares the profiles of all meshes with that of the finest mesh. The verdict is IN_KIND if all
-    profiles with 128 vertices or more are smooth, but a coarser mesh has a profile that is not noisy, or a droplet that
-    does not pass."""
+    """Compares the profile of each mesh with the profile of the finest mesh. The verdict is IN_KIND if all profiles
+    with 128 vertices or more are smooth, but not all coarser meshes have noisy profiles."""
     runs = channels.meshes(runner)
     *coarser, finest = sorted(runs)
     if not coarser or not coarser[0] < 128 <= coarser[-1]:
@@ -115,8 +115,8 @@ SMOOTH = 0.02  # A quarter of 0.08, the deviation of a published simulation from
 
 
 def ripples(way: Any, finest: Any) -> float:
-    """The ripples of a speed profile [v_t]: the root mean square of its difference from the profile on the finest mesh,
-    after subtraction of the difference's running mean over a tenth of a diameter."""
+    """The size of the ripples of a speed profile [v_t]. The profile on the finest mesh is subtracted, and then a
+    running mean over a tenth of a diameter. The size is the root mean square of the rest."""
     h = np.arange(-0.9, 0.9, 0.005)
     known = (h > way["h"].min()) & (h < way["h"].max())
     apart = np.interp(h[known], way["h"], way["speed_ratio"]) - np.interp(h[known], finest["h"], finest["speed_ratio"])
@@ -171,7 +171,7 @@ def calibrated_to_measured(_: Runner) -> Finding:
 
 
 def tension_times_tilt(_: Runner) -> Finding:
-    """Gamma is inversely proportional to the sine of the tilt, so their product is the same for all tilts."""
+    """Gamma is inversely proportional to the sine of the tilt, so Gamma times this sine is equal for all tilts."""
     products = [tension * math.sin(math.radians(tilt)) for tension, tilt in channels.TILTS.items()]
     return arithmetic(products, (products[0],) * 3, 0.02)
 
@@ -188,7 +188,7 @@ def springs_reach_a_plateau(runner: Runner) -> Finding:
 
 
 def shapes_deviate_less(runner: Runner) -> Finding:
-    """Compares the deviations of shapes and of speeds between passages with different springs."""
+    """Compares how much springs change the shapes in a passage with how much they change its speeds."""
     entries = channels.spring_deviations(runner, "elastic")[1].values()
     shares = [entry["delta_a"] / entry["delta_v"] for entry in entries]
     return Finding(AGREES if max(shares) <= 0.2 else IN_KIND if max(shares) < 1 else DOES_NOT,

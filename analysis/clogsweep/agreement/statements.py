@@ -19,6 +19,7 @@ EXPONENT = ("4/3 is the exponent for a vertex; a droplet has a smaller one, beca
 # The model, interface and contact of a verdict. Variants have others.
 CHANNEL, SURFACE = "robust, contact at half a vertex's distance (published)", "robust, contact at the surface"
 ROBUST, ELASTIC, DISK = "robust, no friction", "elastic, no friction", "soft disk"
+SPRINGS = "elastic, contact at the surface, and literal, contact at half a vertex's distance"
 FORMULA, NOTHING = "published numbers", "-"
 CLOSE_SHAPE = "within 0.01, the published deviation of shapes; within 0.04 qualitatively"
 CLOSE_PLACE = "within 0.1 σ; within 0.4 σ qualitatively"
@@ -122,7 +123,7 @@ STATEMENTS = [
         passages.not_published, reasons={NOT_KNOWN: NOT_PUBLISHED}),
     Statement(
         "appendix B, figure B2", "the deviation from the experiment reaches a plateau for K_l/Γ below 0.01",
-        SURFACE,
+        SPRINGS,
         "profiles for K_l/Γ below 0.01 differ by at most twice 0.08, the deviation of each from the"
         " experiment",
         passages.springs_reach_a_plateau, ("B2",),
@@ -144,7 +145,7 @@ STATEMENTS = [
         passages.tension_times_tilt),
     Statement(
         "4.1", "shapes deviate much less than speeds: Δ_A is much smaller than Δ_v",
-        SURFACE,
+        "elastic, contact at the surface",
         "Δ_A/Δ_v is at most 0.2 for every pair of springs; below 1 qualitatively",
         passages.shapes_deviate_less, ("B2",)),
     Statement(

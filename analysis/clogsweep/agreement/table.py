@@ -31,8 +31,8 @@ def shortened(value: str) -> str:
 
 
 def markdown(judged: Sequence[Judged], version: int | None) -> str:
-    """A table for each section of the article. Of several results it shows only the first and the last. For variants it
-    shows only the verdicts."""
+    """A table for each section of the article. If a statement has several results, the table shows only the first and
+    the last. For variants the table shows only the verdicts."""
     rows = "No sweep has been run" if version is None else f"All rows have model version {version}"
     summary = f"The verdicts on the article's {len(judged)} statements are {counts(judged)}. {rows}."
     lines = [textwrap.fill(summary, 118)]

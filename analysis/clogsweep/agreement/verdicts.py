@@ -1,6 +1,6 @@
 """The verdicts on statements of the article (Cheng et al.), and how a statement is judged.
 
-The program computes the verdict. If it is not `agrees`, it comes with a reason that was written by hand.
+The program computes the verdict. Each verdict other than `agrees` has a reason that was written by hand.
 """
 
 import dataclasses
@@ -15,7 +15,7 @@ from ..tools.hints import Group
 AGREES, IN_KIND, FITTED = "agrees", "qualitatively", "by construction"
 FORCED, BY_MESH = "agrees with an added force", "artefact of the mesh"
 DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
-# The summary of the table has this order.
+# The summary of the table lists the verdicts in this order.
 VERDICTS = [AGREES, IN_KIND, FORCED, BY_MESH, FITTED, DOES_NOT, NOT_KNOWN, NOT_RUN]
 
 
@@ -24,7 +24,7 @@ class Finding:
     """What this program finds about a statement.
     @param value  text with numbers and their intervals
     @param variants  verdicts and values of other models
-    @param brief  the same verdicts without values"""
+    @param brief  verdicts of other models, without values"""
 
     verdict: str
     value: str
@@ -40,7 +40,7 @@ class Statement:
     @param criterion  what `agrees` and other verdicts mean, with thresholds; written before the runs are read
     @param judge  finds the verdict
     @param figures  the figures with sweeps that the judge needs
-    @param reasons  the reason for each verdict that has one, in addition to ALWAYS"""
+    @param reasons  reasons by verdict, in addition to ALWAYS"""
 
     where: str
     text: str
@@ -75,7 +75,8 @@ def with_variants(found: Mapping[Family, Finding]) -> Finding:
 
 
 def words_of_variants(found: Sequence[tuple[str, Finding]]) -> tuple[str, str]:
-    """The verdicts on variants with their values, and without. @param found  names and findings"""
+    """Two texts: the verdicts on the variants, each followed by its value, and the same verdicts without values.
+    @param found  names and findings"""
     variants = "; ".join(f"{name}: {finding.verdict}" + (f", {finding.value}" if finding.value else "")
                          for name, finding in found)
     names: dict[str, list[str]] = {}

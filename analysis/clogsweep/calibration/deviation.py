@@ -21,8 +21,8 @@ def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int
     """v_measured/v_simulated - 1 of each frame, and the number of frames that the simulated droplet never reached.
     @throws UserError  if frames are upstream of the start of the simulation
 
-    The residual of such a frame is 10, plus 10 for each diameter between the frame and the farthest point that the
-    droplet reached. With these residuals, a search among droplets that clog can detect progress.
+    The residual of a frame that was never reached is 10, plus 10 for each diameter between the frame and the farthest
+    point that the droplet reached. With these residuals, a search among droplets that clog can detect progress.
     """
     speed = at(simulated, measured.h).speed
     refuse_upstream(measured.h[np.isnan(speed) & (measured.h < simulated.h[0])], simulated)

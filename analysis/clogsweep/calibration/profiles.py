@@ -11,11 +11,11 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 FEWEST_FRAMES = 3
-# For the calibration of a simulated passage, only frames within this distance from the orifice are used [sigma].
-# Experiments have frames only there.
+# A calibration to a simulated passage uses only frames within this distance from the orifice [sigma], because
+# experiments have no frames farther away.
 FARTHEST_FRAME = 1.5
 FRAMES_PER_DIAMETER = 20
-ROUNDING = 1e-9  # [sigma]
+ROUNDING = 1e-9  # [sigma].
 # The units that clogfit units knows. Unicode has two characters for micro.
 METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}
 
@@ -37,8 +37,8 @@ class ReducedUnits(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """The conditions of a passage, apart from those of the droplet. Each field has the name of a column. The
-    corresponding key has the same name, with hyphens in place of underscores."""
+    """The conditions of a passage that do not belong to the droplet. Each field has the name of a column of the table
+    of runs. The name of the key is the name of the column with hyphens in place of underscores."""
 
     orifice: float
     wedge_angle: float
@@ -105,7 +105,7 @@ def at(profile: Profile, h: Numbers) -> Profile:
     counts. Values are NaN upstream of the start, and at places that the droplet never reaches."""
     first = profile.h >= np.maximum.accumulate(profile.h)
     ends = np.array([profile.h[0], profile.h.max()])
-    # Conversion to diameters may round a frame at the start or at the end of the profile to a place outside.
+    # When h was converted to diameters, rounding may have moved the first or the last frame beyond the profile's end.
     near = np.where(np.abs(h - np.clip(h, *ends)) < ROUNDING, np.clip(h, *ends), h)
     return Profile(h, *(np.interp(near, profile.h[first], values[first], left=math.nan, right=math.nan)
                         for values in profile[1:]))

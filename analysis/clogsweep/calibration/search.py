@@ -1,10 +1,10 @@
 """Searches for the line tension and the near-wall drag with which the simulation is closest to a measured passage.
 
 Close to a line tension at which the droplet clogs, Delta_v has several minima, each about a percent of Gamma wide. The
-search begins on a coarse grid and descends from the best points of this grid by the simplex method. It then brackets
-the line tension at which droplets clog, and descends again from several line tensions below this bracket. Their
-distance from the bracket doubles from one to the next. At the end the search takes Gauss-Newton steps. It stops when
-neither these steps nor another simplex lower Delta_v further.
+search begins on a coarse grid and descends from the best points of this grid by the simplex method. The next step
+brackets the line tension at which droplets clog. The search then descends again from several line tensions below this
+bracket. Each of these line tensions is twice as far from the bracket as the one before. At the end the search takes
+Gauss-Newton steps. The search stops when neither these steps nor another simplex lower Delta_v further.
 """
 
 import itertools
@@ -39,7 +39,7 @@ CLOG_WIDTH = 0.005  # Width to which the bracket around the line tension of a cl
 LONGEST_STEP = np.array([0.05, 0.01])
 SHORTEST_STEP = np.array([5e-4, 1e-4])
 MOST_ROUNDS = 20
-WORTH_IT = 0.999  # A round counts as a gain if it multiplies Delta_v by less than this.
+WORTH_IT = 0.999  # A round is a gain if the ratio of the new Delta_v to the old one is below this value.
 NEGLIGIBLE = 0.03  # Gauss-Newton steps shorter than this many standard errors are not taken.
 
 GOOD = 0.2  # A larger Delta_v causes a warning, because speeds then differ by more than a fifth.
@@ -54,8 +54,8 @@ class Attempt(NamedTuple):
 
     place: tuple[float, float]
     simulated: Profile
-    residuals: Numbers  # of the speed
-    num_never_reached: int  # Frames.
+    residuals: Numbers  # Residuals of the speed.
+    num_never_reached: int  # Number of frames that the droplet never reached.
 
     @property
     def delta(self) -> float:
@@ -66,8 +66,8 @@ class Calibration(NamedTuple):
     """The line tension and the near-wall drag of one profile. Errors are NaN if the frames do not determine both
     quantities."""
 
-    line_tension: float  # [g rho sigma^2]
-    line_tension_error: float  # Estimated from the scatter of the frames about the best run.
+    line_tension: float  # [g rho sigma^2].
+    line_tension_error: float  # The error follows from the scatter of the frames about the best run.
     near_wall_drag: float  # b_0/b_inf
     near_wall_drag_error: float
     delta_v: float
@@ -167,7 +167,7 @@ class Search:
 
     def bracket_clog(self, grid: Sequence[Attempt], drag: float) -> tuple[float, float] | None:
         """log Gamma of a droplet that reaches all frames, and of a slightly stiffer droplet that does not. The result
-        is None if there is no such pair."""
+        is None if there are no two such droplets."""
         brackets = [(softer.place[0], stiffer.place[0]) for softer, stiffer in zip(grid, grid[len(GRID_DRAGS):])
                     if softer.num_never_reached == 0 < stiffer.num_never_reached]
         if not brackets:

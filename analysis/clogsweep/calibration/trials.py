@@ -16,8 +16,8 @@ INTERRUPTED = 75
 
 
 class Progress:
-    """Shows the quality of the best simulations so far: the largest deviation among the best simulations of all trials.
-    Several threads may report simulations."""
+    """Shows the progress of all trials in one line. The line contains the best simulation so far of the trial with the
+    largest Delta_v. Several threads may report simulations."""
 
     def __init__(self, num_trials: int) -> None:
         self.best = [(math.inf, 0.0, 0.0)] * num_trials  # Delta_v, Gamma, b_0/b_inf

@@ -1,5 +1,5 @@
-"""Finds the largest line tension at which droplets break up on a single obstacle. It depends on the offset of the
-droplet's path from the obstacle's centre."""
+"""Finds the largest line tension at which droplets break up on a single obstacle, for each offset of the droplet's path
+from the obstacle's centre."""
 
 import math
 import pathlib
@@ -15,20 +15,21 @@ DIAMETER = 0.3  # Diameter of the obstacle [sigma].
 FALL = 3
 BOX = 20
 KEYS = {"preset": "robust", "vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
-# Range of the search. Its lower end is below the tested range of line tensions; at its upper end droplets never break
-# up.
+# The searched range of line tensions. The lower end is below the tested line tensions. At the upper end no droplet
+# breaks up.
 TENSIONS = (0.01, 0.6)
 PRECISION = 0.02
 STEPS = 6  # number of parts into which each sweep divides the range
 
-# The largest tried line tension at which the droplet breaks up. Then the smallest larger one that was tried and at
-# which the droplet does not break up.
+# A bracket of tried line tensions: the droplet breaks up at the first of them, and stays whole at the second. No line
+# tension in between was tried.
 Threshold = tuple[float | None, float | None]
 
 
 def symmetry(offset: float) -> float:
-    """The symmetry of a collision. A line at the offset from the centre divides a circle of radius 1/2; the symmetry is
-    the smaller area divided by the larger one."""
+    """The symmetry of a collision. A line divides a circle of radius 1/2 into two parts. The distance of the line from
+    the circle's centre is the offset. The symmetry is the area of the smaller part divided by that of the larger
+    part."""
     small = (math.acos(2 * offset) - 2 * offset * math.sqrt(1 - 4 * offset**2)) / math.pi
     return small / (1 - small)
 

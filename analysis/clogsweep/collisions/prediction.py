@@ -1,6 +1,6 @@
 """Predicts clogging lengths from droplets that fall onto one or two obstacles. Simulations show which pairs of
-obstacles, and which single obstacles, hold a droplet. The prediction follows from the number of such pairs and
-obstacles in an array.
+obstacles, and which single obstacles, hold a droplet. The prediction follows from the number of pairs and of
+single obstacles in an array that would hold a droplet.
 
 docs/reference/analysis.md describes the law and its limits.
 """
@@ -21,13 +21,12 @@ from .collision import BOX, FALL
 # Step between the gaps of the simulated pairs [sigma]. The step is a twentieth of the range of gaps that can hold a
 # droplet.
 GAP_STEP = 0.04
-ANGLE_STEP = 3  # [degrees]
+ANGLE_STEP = 3  # Step between the angles of the simulated pairs [degrees].
 DIAMETER_STEP = 0.1  # Step between the mean diameters of the simulated pairs [sigma].
 EXIT = 6  # Distance of the exit behind the obstacles [sigma]. Droplets that hang there do not reach the exit.
 # Length of a fall [sigma]. A droplet that still moves after the time of this fall at terminal speed counts as free.
 LONGEST_FALL = 90
-# Precision of the half-width within which one obstacle holds a droplet [sigma]. Then the number of parts into which
-# each step of the search divides its bracket.
+# Precision of half_width() [sigma], and the number of parts into which each step of its search divides the bracket.
 OFFSET_PRECISION, OFFSET_STEPS = 0.0001, 6
 SPEED = 0.03  # Default terminal speed [sqrt(sigma g)].
 SMALLEST_LENGTH = 4  # Below this length, predictions were too long by a third or more [sigma].
@@ -92,8 +91,8 @@ class Droplets:
         except ValueError:
             raise UserError(f"invalid terminal-speed={keys['terminal-speed']} "
                             f"(must be a number); try {SPEED}") from None
-        # The time is limited because a soft droplet may creep on an obstacle without ever ending. Droplets that pass
-        # end at the exit.
+        # max-time is set because a soft droplet may creep on an obstacle for ever. A droplet that passes ends its run
+        # at the exit.
         self.keys = {"max-time": f"{LONGEST_FALL / speed:g}", "exit": f"{BOX / 2 + FALL + EXIT:g}"} | keys
 
     def ends(self, arrays: Sequence[Circles], tension: float | None = None) -> dict[float, list[bytes]]:
@@ -145,8 +144,8 @@ class Droplets:
 
 
 def mean_cosine(held: Sequence[bool]) -> float:
-    """The mean of cos(angle) over all directions of a pair. Directions in which the pair does not hold the droplet
-    contribute 0.
+    """The mean of cos(angle) over all directions of a pair, with 0 in place of the cosine for directions in which the
+    pair does not hold the droplet.
 
     A pair that holds the droplet is assumed to stop every droplet that arrives between the centres of its obstacles.
     Other droplets slide off to the outside.

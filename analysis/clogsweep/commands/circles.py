@@ -115,8 +115,8 @@ def unit_in_words(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str
 
 
 def call_of(device: shapes.Device, drawing: shapes.Drawing, output: pathlib.Path) -> str:
-    """The command that starts a sweep of the device. The border of a picture or of a region is no wall. In a device
-    that is long enough, entrance and exit are one droplet diameter inside, because the posts repeat along the flow."""
+    """The command that starts a sweep of the device. The border of a picture or of a region is no wall. Posts repeat
+    along the flow, so the entrance and the exit of a long device are one droplet diameter inside its ends."""
     walls = "" if drawing.frame and len(device.walls) < 2 else "side-walls=on "
     inset = 1 if device.length >= 4 else 0
     ends = f"entrance={inset} exit={device.length - inset:.6g}" if inset else f"exit={device.length:.6g}"
@@ -210,7 +210,7 @@ def named_slender(device: shapes.Device) -> list[str]:
 
 
 def remedy_of_touching(device: shapes.Device, pairs: list[tuple[int, int]], are_holes_read: bool) -> str:
-    """The remedy for posts that touch. Rings are drawn as a circle within another one."""
+    """The remedy for posts that touch. Two circles, one within the other, are the drawing of a ring."""
     one, other = (device.circles[[pair[side] for pair in pairs]] for side in (0, 1))
     is_within = np.hypot(*(one - other)[:, :2].T) <= np.abs(one - other)[:, 2] / 2
     if not is_within.any():

@@ -196,8 +196,8 @@ def tell(text: object) -> None:
 
 
 def _give_up(stream: TextIO) -> None:
-    """Redirects a failed stream to /dev/null. Otherwise Python would try to write the rest of it at exit, fail again,
-    and return 120."""
+    """Redirects a failed stream to /dev/null. Without this, Python would try to write the rest of the output at exit,
+    fail again, and return 120."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, stream.fileno())
     os.close(null)

@@ -109,7 +109,7 @@ def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, 
 
 
 def changing_density(keys: Sequence[str], config: dict[str, str]) -> str:
-    """A sentence that a density of obstacles changes with a refined key; otherwise an empty text."""
+    """A note for the user if the density of obstacles changes with a refined key, otherwise an empty text."""
     density, sizes = config["obstacle-density"], [key for key in keys if key in ("obstacle-gap", "obstacle-diameter")]
     if config["obstacle-layout"] != "random" or not sizes or not math.isnan(number(density)):
         return ""
@@ -169,8 +169,8 @@ def body() -> int:
         search = search_of(arguments, keys, values, plan_of)
         if (note := changing_density(keys, values)) and not arguments.quiet:
             print(f"python3 -m clogsweep refine: {note}", file=sys.stderr)
-        # Searches with the same settings and the same first round share their files, even if their goals differ. They
-        # can use the same rounds.
+        # Searches with the same settings and the same first round share their files, even if their goals differ, so
+        # one search continues with the rounds of the other.
         content = config + driver.points_text(keys, search.first_round()) + _circles(values["obstacles"])
         name = "refine-" + hashlib.sha256(content.encode(errors="surrogateescape")).hexdigest()[:8]
         beside = folder / name if arguments.dry_run else arguments.output.with_name(f"{arguments.output.name}.{name}")

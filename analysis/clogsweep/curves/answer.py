@@ -16,8 +16,8 @@ from ..tools.hints import AnyPath, Column, Group, Numbers
 from . import features, model, points
 
 ALL = ("clogging_length", "clogging_length_lower", "clogging_length_upper")
-# The keys are those columns of clogfit that have the number of runs that each cause ended. The values are the columns
-# with the cause's length and the two ends of its interval.
+# For each cause, the columns of clogfit. The key is the column with the number of runs that the cause ended. The value
+# has the columns with the length and the two ends of its interval.
 CAUSES = {cause: tuple(f"clogging_length_{cause}{end}" for end in ("", "_lower", "_upper")) for cause in ("wrapped", "squeezed", "hybrid", "other")}
 CAUSES["broken"] = ("break_up_length", "break_up_length_lower", "break_up_length_upper")
 
@@ -112,7 +112,7 @@ def bands_by_cause(groups: Sequence[Group], known: model.Points, places: Numbers
                    whole: Numbers) -> dict[tuple[str, ...], Numbers]:
     """The band of each cause by which some droplets clog. In the fit for one cause, clogs by the other causes count as
     censored. If the causes of some clogs are unknown, there are no bands.
-    @param whole  the band of all clogs; it is also the band of a cause that holds all clogs"""
+    @param whole  the band of all clogs, which is returned for a cause to which all clogs belong"""
     if any(group[cause] is None for group in groups for cause in CAUSES):
         return {}
     counts = {names: _column(groups, cause) for cause, names in CAUSES.items() if any(group[cause] > 0 for group in groups)}

@@ -104,7 +104,7 @@ def tops(heights: Numbers, places: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def find_peak(curve: Curve, places: Numbers, confidence: float) -> Peak:
-    """The place and the height of the peak of the mean curve. Their intervals come from curves drawn from the
+    """The place and the height of the peak of the mean curve. The intervals of both come from curves drawn from the
     posterior. @param places  see tops()"""
     draws = drawn_curves(curve)
     draw_places, draw_heights = tops(draws, places)

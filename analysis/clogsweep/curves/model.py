@@ -27,7 +27,7 @@ JITTER = 1e-8
 # Standard deviations of log lambda, equivalent to factors of lambda from 1.3 to 3000.
 AMPLITUDES = (0.25, 0.5, 1, 2, 4, 8)
 RANGE_FRACTIONS = (0.1, 0.16, 0.25, 0.4, 0.63, 1, 1.6, 3)  # Correlation lengths, divided by the range of the places.
-WEIGHT_USED = 0.98  # The most likely scales are used until their weights sum to this. The others have no effect.
+WEIGHT_USED = 0.98  # Scales are used in the order of their weights, up to this sum of weights.
 MOST_STEPS = 200
 MOST_HALVINGS = 40
 SETTLED = 1e-10  # Newton's iteration ends when the log posterior gains less than this.

@@ -1,9 +1,10 @@
 """Decides which groups of clogfit's table belong to a curve, and why others do not.
 
 Groups with different physical parameters belong to different curves. A numerical parameter, such as `inertia` or `box`,
-usually does not separate curves, because some parameter sets need another box or more time than others. It separates
-curves if the sweep varies this parameter while the physics stays the same. Values that follow from other parameters
-never separate curves: automatic values, the name of the preset, and the density of a saturated array.
+usually does not separate curves, because some parameter sets need another box or more time than others. A numerical
+parameter separates curves only if the sweep varies this parameter while the physics stays the same. Values that follow
+from other parameters never separate curves: automatic values, the name of the preset, and the density of a saturated
+array.
 """
 
 from __future__ import annotations
@@ -50,7 +51,8 @@ def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
 
 
 def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
-    """Whether the parameter's value follows from other parameters. A value in a list of the sweep never does."""
+    """Whether the parameter's value follows from other parameters. The user chose values that are in a list of the
+    sweep, so they do not follow from others."""
     name = column["name"]
     return name not in fit["lists"] and (name in group["automatic"] or name in fit.get("following", ()))
 
@@ -65,8 +67,8 @@ def may_be_key(fit: Fit, column: Column) -> bool:
 def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
     """The columns of the keys with these names. If `names` is empty, the column of the only physical parameter that
     varies.
-    @throws UserError  if a name is no such key, or if its values do not vary or have no logarithm; if `names` is empty
-    and not exactly one parameter varies"""
+    @throws UserError  if a name is not the name of a possible key, or if values do not vary or have no logarithm; also
+    if `names` is empty and several parameters vary, or none"""
     groups: list[Group] = fit["groups"]
     possible = {column["key"].replace("-", "_"): column for column in fit["columns"] if may_be_key(fit, column)}
     if names:
@@ -104,8 +106,8 @@ def refuse_key(name: str, fit: Fit) -> Column:
 
 
 def are_shares(groups: Iterable[Group]) -> bool:
-    """Whether the sweep varies the density of random arrays as a share of the saturated density. The density then
-    depends on gap and diameter, and there are fewer shares than densities."""
+    """Whether the sweep varies the density of random arrays as a share of the saturated density. One share gives a
+    different density for each gap and diameter, so a sweep of shares has fewer shares than densities."""
     given = [group for group in groups if group["obstacle_filling"] == "density"]
     return len({_share(group) for group in given}) < len({_rounded(group["obstacle_density"]) for group in given})
 
@@ -189,8 +191,8 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
         if not (group["total_distance"] or 0) > 0:
             excluded.append(Excluded(index, "no run of it has covered any distance"))
         elif group["exit"]:
-            # In a short device only few places hold droplets. So clogs at one value of the key do not inform the curve
-            # at other values.
+            # In a short device only few places hold droplets, so clogs at one value of the key say nothing about
+            # lengths at other values.
             excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
         else:
             useful.append(index)

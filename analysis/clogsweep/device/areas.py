@@ -21,7 +21,7 @@ SAME = 1e-8  # Corners are the same if they differ by at most this fraction of t
 
 
 def tidy(drawing: Drawing, region: Numbers | None, tolerance: float, are_holes_posts: bool = False) -> None:
-    """Drops duplicates, unites outlines that touch, and cuts out the page and a region.
+    """Drops duplicates, unites outlines that touch, and removes what is outside the page or outside a region.
     @param are_holes_posts  whether the holes in outlines are the posts, see posts_of_holes()
     @param region  two opposite corners in the coordinates that a drawing program shows, or None
     @param tolerance  as in fitted_circle()"""
@@ -189,8 +189,8 @@ def unite(drawing: Drawing, circle_tolerance: float) -> None:
 
 def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
     """Pairs of outlines with bounding boxes that touch. Outlines as long and as wide as the drawing are excluded,
-    because they are edges of the device. Rectangles as long as the drawing are walls, and touch no other outlines.
-    But two such rectangles side by side, one of them with notches, are treated as pieces of an area with holes."""
+    because they are edges of the device. A rectangle as long as the drawing is a wall, and is not paired. Two long
+    rectangles side by side, one of them with notches, are an exception: they are pieces of an area with holes."""
     if len(outlines) < 2:
         return []
     lows, highs = (np.array([end(outline, axis=0) for outline in outlines]) for end in (np.min, np.max))

@@ -17,11 +17,11 @@ from ..tools.hints import Numbers
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
 LINK = "{http://www.w3.org/1999/xlink}href"
-# Elements that are no shapes, and attributes and properties with which librsvg would draw pixels, or markers.
+# Elements that are no shapes; attributes and properties that would make librsvg draw pixels or markers.
 NO_SHAPES = ("text", "image", "foreignObject")
 PIXELS = ("filter", "mask", "marker", "marker-start", "marker-mid", "marker-end", "mix-blend-mode", "isolation",
           "enable-background")
-# CSS that librsvg does not know. In a browser it would move shapes or change their size or colour.
+# CSS that librsvg does not know, and that would move shapes or change their size or colour in a browser.
 TRANSFORMS = {"transform-origin": r"(?<![\w-])transform-origin\s*[:=]",
               "transform-box": r"(?<![\w-])transform-box\s*[:=]",
               "translate, rotate or scale": r"(?<![\w-])(?:translate|rotate|scale)\s*:"}
@@ -34,11 +34,11 @@ IGNORED = {"@media": r"@media\b", "@layer": r"@layer\b", "@import": r"@import\b"
            "markers": r"(?<![\w-])marker(?:-start|-mid|-end)?\s*[:=](?!\s*[\"']?\s*none\b)",
            "media of style sheets": r"<(?:\w+:)?style[^>]*\smedia\s*=",
            "style sheets in other files": r"<\?xml-stylesheet|<(?:\w+:)?link\b"}
-# Two sizes: the longer side of the page, and the canvas around the page, which also has everything outside the page.
-# librsvg has single precision, in which powers of two are exact.
+# The longer side of the page, the side of the canvas around the page, and the place of the page on the canvas. Shapes
+# outside the page are on the canvas, too. librsvg has single precision, in which powers of two are exact.
 PAGE, CANVAS, BEFORE = 2**16, 2**20, 2**19
-SIZE = 2**22  # Size of the flat drawing [px]. Its coordinates are multiples of 1/256.
-STEP = 1e-7  # Coordinates in pixels of the page are multiples of this fraction of its longer side.
+SIZE = 2**22  # Size of the flat drawing [px]. Coordinates in the flat drawing are multiples of 1/256.
+STEP = 1e-7  # Coordinates are rounded to multiples of this fraction of the page's longer side.
 
 
 @dataclasses.dataclass
@@ -49,8 +49,8 @@ class Flat:
     longer: float  # The longer side of the page [px].
 
     def to_page(self, points: Numbers) -> Numbers:
-        """Points (n, 2) in pixels of the page, without the rounding of librsvg. Points on the page's border stay on
-        it."""
+        """Points (n, 2) in pixels of the page. Rounding to STEP removes the rounding errors of librsvg, so points on
+        the page's border stay on the border."""
         shares = (np.asarray(points) * CANVAS / self.size - BEFORE) / PAGE
         return np.round(shares / STEP) * STEP * self.longer
 

@@ -23,8 +23,8 @@ def read_gds(path: pathlib.Path, layer: str | None, cell: str | None = None) -> 
     @param cell  the only cell to be read, in place of the top cells"""
     gdspy = library("gdspy", "python3-gdspy")
     try:
-        with path.open("rb") as stream, warnings.catch_warnings():  # gdspy does not close a file that it cannot read
-            warnings.simplefilter("error", UserWarning)  # gdspy only prints a warning about records that it ignores
+        with path.open("rb") as stream, warnings.catch_warnings():  # gdspy would leave an unreadable file open.
+            warnings.simplefilter("error", UserWarning)  # By default gdspy prints a warning about ignored records.
             content = exact_library(gdspy)(infile=stream, units="import")
     except UserWarning as warning:
         raise UserError(f"cannot read {path} ({warning}); "
@@ -64,8 +64,8 @@ def exact_library(gdspy: Any) -> Any:
     """gdspy's reader with two changes. An array becomes one reference for each of its places, and a round path without
     length becomes a disc.
 
-    gdspy's own arrays have only two spacings, along the axes of the cell. So gdspy misplaces an array with an oblique
-    lattice, or with a lattice that is turned by another angle than the cell."""
+    gdspy's own arrays have only two spacings, along the axes of the cell. Because of this, gdspy misplaces an array
+    with an oblique lattice, or with a lattice that is turned by another angle than the cell."""
     class Library(gdspy.GdsLibrary):  # type: ignore[misc]
         def _create_path(self, *, xy: Any, **path: Any) -> Any:
             """@throws UserWarning  if the path has neither length nor round ends"""

@@ -18,7 +18,7 @@ from .walls import area
 ENDINGS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
 FEWEST_CORNERS = 12  # Outlines with fewer corners are specks. The outline of three pixels has this many corners.
 MOST_OF_BORDER = 0.95  # Posts may be bright only if at least this fraction of the picture's border is dark.
-X_RESOLUTION, Y_RESOLUTION, RESOLUTION_UNIT, DESCRIPTION, PHOTOMETRIC = 282, 283, 296, 270, 262  # tags of TIFF
+X_RESOLUTION, Y_RESOLUTION, RESOLUTION_UNIT, DESCRIPTION, PHOTOMETRIC = 282, 283, 296, 270, 262  # Tags of TIFF.
 MODES = ("1", "L", "RGB", "RGBA")  # Modes of Pillow with up to 8 bits per channel.
 ORIENTATION = 274  # Tag of EXIF and TIFF.
 METRES_IN_TIFF = {2: METRES["in"], 3: METRES["cm"]}

@@ -17,7 +17,7 @@ from .shapes import Device, valid
 # Distance between neighbouring circles of a row, divided by their radius. The roughness of the row is then 1.4 % of the
 # radius.
 SPACING = 1 / 3
-SMALLEST_VOID = 0.35  # Largest radius of an empty space inside a post [sigma]. No droplet fits into such a space.
+SMALLEST_VOID = 0.35  # Largest radius of an empty space inside a post [sigma], into which no droplet fits.
 MOST_FILLERS = 100
 MOST_CIRCLES, MANY_CIRCLES = 200000, 20000
 
@@ -36,7 +36,7 @@ class Rows:
     """The resulting posts. Lengths are in droplet diameters."""
 
     device: Device
-    # Radius of the circles of a row, to which corners are rounded; smaller in posts that are too thin for it.
+    # Radius of the circles of a row, to which corners are rounded. In thin posts the circles are smaller.
     corner: float
     farthest: float  # Largest distance of a drawn outline from the circles, which do not fill its corners.
     roughness: float

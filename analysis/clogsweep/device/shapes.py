@@ -34,10 +34,11 @@ class Drawing:
     """A drawing as read from its file. Lengths are in the drawing's own unit, and y points upwards."""
 
     circles: list[tuple[float, float, float]]  # Each has x, y and diameter.
-    # Corners (n, 2) of each outline. Its last corner is joined to its first, unless the border of a picture cuts it.
+    # Corners (n, 2) of each outline. An outline is closed from its last corner to its first, unless the border of a
+    # picture cuts the outline.
     outlines: list[Numbers]
     metres: float | None  # Length of the drawing's unit [m]; None if the file does not state it.
-    frame: Box | None = None  # A picture, or the region that the user gave.
+    frame: Box | None = None  # The border of a picture, or of the region that the user gave.
     is_picture: bool = False  # Whether the drawing consists of pixels.
     # Holes in outlines. Holes are no posts, but a hole may be the device's edge.
     holes: list[Numbers] = dataclasses.field(default_factory=list)
@@ -50,12 +51,12 @@ class Drawing:
     unit_hint: str = ""  # Words that name a unit that the drawing may mean.
     notes: list[str] = dataclasses.field(default_factory=list)  # Messages about how the drawing was read.
     layers: dict[str, int] = dataclasses.field(default_factory=dict)  # Number of objects on each layer, chosen or not.
-    # Outlines that a union made of round posts and other outlines, and the number of these posts.
+    # Each outline that came from a union of round posts with other outlines, and the number of these posts.
     swallowing: list[tuple[Numbers, int]] = dataclasses.field(default_factory=list)
     page: Box | None = None  # The page of an SVG, outside which nothing is visible.
     outside: int = 0  # Number of outlines, circles and lines outside the region that the user gave.
     can_join: bool = True
-    unit_in_words: str | None = None  # Name of the unit, if this is not the usual name of a length of `metres`.
+    unit_in_words: str | None = None  # Name of the unit in messages, if it is not unit_name(metres).
     # Converts points (n, 2) from the coordinates of a drawing program to those of this object.
     from_own: Callable[[Any], Numbers] = np.asarray
     # Number of objects of each kind that are no posts. Lines are not counted here.
@@ -71,7 +72,8 @@ class Drawing:
         return np.asarray(np.linalg.solve(np.transpose(ends - origin), np.transpose(points - origin)).T)
 
     def layers_in_words(self) -> str:
-        """The layers and their numbers of objects, such as "; it has layer 1/0 with 55 objects, 2/0 with 1 object"."""
+        """The layers and their numbers of objects, such as "; its layers are 1/0 with 55 objects, 2/0 with 1 object".
+        """
         named = ", ".join(f"{name} with {rounded.count_text(count, 'object')}"
                           for name, count in sorted(self.layers.items()))
         return f"; its layers are {named}" if named else ""
@@ -305,12 +307,13 @@ def leave_out_centres_beyond(drawing: Drawing, frame: Box,
 
 
 def left_out(number: int, name: str) -> str:
-    """@param number  of posts with their centre outside a region, @param name  of the region"""
+    """The message about posts with a centre outside a region. @param name  name of the region"""
     return f"{rounded.count_text(number, 'post')} left out that {'reaches' if number == 1 else 'reach'} into the {name} from outside"
 
 
 def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
-    """@param outlines  that will not become posts unchanged. @throws UserError  if a union made them of round posts"""
+    """Refuses outlines that came from a union with round posts, because these posts would be lost.
+    @param outlines  outlines that do not become posts with their own shape"""
     number = sum(posts for outline, posts in drawing.swallowing if walls.is_one_of(outline, outlines))
     if number:
         raise UserError(f"{rounded.count_text(number, 'round post')} would vanish, because posts cross a larger "
@@ -320,9 +323,9 @@ def refuse_swallowed(drawing: Drawing, outlines: list[Numbers]) -> None:
 
 
 def lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> list[Numbers]:
-    """The holes that may be meant as posts. Round holes are among them if they are neither the device's edge nor within
-    a round post. Holes of any form are among them if they are within the edge (or within the only outline), and within
-    no other outline."""
+    """The holes that may be meant as posts. These are round holes, unless they are the device's edge or within a round
+    post. Holes of any other form may be meant as posts if they are within the edge (or within the only outline), and
+    within no other outline."""
     posts = [*drawing.circles, *filter(None, (fitted_circle(outline, True, tolerance) for outline in drawing.outlines))]
     places = np.reshape(posts, (-1, 3))
     is_alone = edge is None and len(drawing.outlines) + len(drawing.circles) == 1
@@ -340,7 +343,7 @@ def lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> list
 def refuse_lost_holes(drawing: Drawing, edge: Numbers | None, tolerance: float) -> None:
     """@throws UserError  if holes in the drawing may be meant as posts"""
     if holes := lost_holes(drawing, edge, tolerance):
-        # The borders between several pieces of one area may cut holes, which are then not among these.
+        # An area may consist of several pieces. A hole that is cut by a border between pieces is not counted here.
         least = "at least " if edge is None and len(drawing.outlines) > 1 else ""
         kind = "round hole" if all(fitted_circle(hole, True, tolerance) for hole in holes) else "hole"
         raise UserError(f"the drawing has {least}{rounded.count_text(len(holes), kind)}, which would not be posts; "

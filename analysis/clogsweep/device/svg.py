@@ -22,7 +22,8 @@ METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
 # Number of straight pieces of each curved segment. For a quarter of a circle, the pieces deviate by 2e-5 of the radius.
 PIECES_OF_CURVE = 64
-# A quarter of an ellipse is drawn as a Bezier curve. Its handles have this fraction of the distance to the corner.
+# Drawing programs draw a quarter of an ellipse as a Bezier curve. The handles of this curve extend to this fraction of
+# the distance to the corner.
 QUARTER = 4 / 3 * (np.sqrt(2) - 1)
 NO_AREA = 1e-6  # A path is a line if it encloses at most this fraction of the square of its size.
 PAGE_WITHOUT_SIZE = 1e4  # [px]
@@ -54,7 +55,8 @@ def read_svg(path: pathlib.Path, are_holes_posts: bool = False) -> Drawing:
 
 
 def refuse_unknown(root: Any, path: pathlib.Path) -> None:
-    """@throws UserError  if a <use> refers to what is not in the file, the whole drawing is transformed, or has no size"""
+    """@throws UserError  if the target of a <use> is not in the file, or if the root of the drawing has a transform or
+    no size"""
     names = {element.get("id") for element in root.iter()}
     for use in root.iter(NAMESPACE + "use"):
         link = next((use.get(name) for name in ("href", flat.LINK) if use.get(name)), "")

@@ -19,7 +19,7 @@ def draw(found: dict[float, Threshold], shared: str) -> Figure:
     known = {offset: math.sqrt(low * high) for offset, (low, high) in sorted(found.items()) if low and high}
     axes.plot(*zip(*known.items()), marker="o", color=style.COLOURS[0])
     axes.set_yscale("log")
-    # Keeps the lower limit of the curve, because the filled area would change it.
+    # This fixes the lower limit of the axis before the area below the curve is filled, which would lower the limit.
     axes.set_ylim(bottom=axes.get_ylim()[0])
     style.plain_logarithmic(axes.yaxis)
     axes.fill_between(list(known), list(known.values()), 1e-9, color=style.COLOURS[0], alpha=0.13, linewidth=0)

@@ -47,7 +47,7 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
 
 
 def tell_left_out(rows: Records) -> None:
-    """Prints how many clogs of_polygons() excludes, if any."""
+    """If of_polygons() excludes clogs, prints how many."""
     if number := int((are_clogged_polygons(rows) & are_passages(rows)).sum()):
         print(f"left out: {rounded.count_text(number, 'clog')} in a channel or on a wall; "
               "clogfit report draws them, after clogsweep select "
@@ -153,8 +153,8 @@ class Clogs(Sequence[Clog]):
 def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.void, folder: str) -> Clog:
     """Computes a run again until its droplet rests. @throws ProgramFailed"""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
-    # A run with a certified clog ended before the droplet reached the equilibrium. Its row describes this equilibrium.
-    # With --to-rest the replay continues to the equilibrium.
+    # A run with a certified clog ended before the droplet reached the equilibrium that the row describes. With
+    # --to-rest the replay continues to the equilibrium.
     replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval",
                    "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:

@@ -26,7 +26,8 @@ from . import device_plan, surroundings
 T = TypeVar("T")
 OVER = [b"clogged", b"flowing", b"passed", b"broken", b"failed"]
 MOST_PANELS = 6
-# Width of the colour bar, or of the legend without its text, and width of a letter of this text [inches].
+# The width of the colour bar, which is also the width of the legend without its text, and the width of a letter in the
+# legend [inches].
 BESIDE, OF_LETTER = 0.9, 0.055
 SITE = 0.25  # Clogs closer together than this are at one place [sigma].
 STEP = 0.1  # Distance between two points of the path of a free droplet [sigma].
@@ -44,8 +45,8 @@ class Place:
     has_walls: bool
     exit: float  # distance of the exit from the entrance, or 0 if there is no exit
     rows: Records
-    droplet: float = 1.0  # diameter of the droplet in the unit of all lengths
-    unit: str = ""  # unit of all lengths, if it is not the diameter of the droplet
+    droplet: float = 1.0  # Diameter of the droplet in the unit of all lengths.
+    unit: str = ""  # Name of the unit of all lengths. The name is empty if this unit is the droplet's diameter.
 
     def coordinate(self, name: str) -> str:
         """The label of an axis."""
@@ -73,7 +74,7 @@ class Place:
         return np.column_stack([x if self.exit > 0 else x % self.length, y if self.has_walls else y % self.width])
 
     def parts(self, groups: Groups) -> list[Part]:
-        """The runs of each parameter set with ended runs, in the order of clogfit's table."""
+        """The runs of each parameter set, in the order of clogfit's table. Sets without any ended run are left out."""
         found = []
         for member in groups.members:
             is_of_group = np.ones(len(self.rows), dtype=bool)
@@ -107,7 +108,7 @@ class Part:
 
     label: str
     place: Place
-    num_displaced: int = 0  # Droplets that were released beside their place on the entrance.
+    num_displaced: int = 0  # Number of droplets that were not released at their random place on the entrance.
     droplet_mm: float | None = None  # Diameter of the droplet, if it is known.
     lines: Sequence[Numbers] = ()  # Paths of droplet centres that are drawn as lines (n, 2).
     mapped: Sequence[Numbers] = ()  # Paths of droplet centres that make up the map of passages (n, 2).
@@ -157,8 +158,9 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
 
 
 def pictures(found: Sequence[Place], groups: Groups) -> list[list[Part]]:
-    """The parameter sets of each picture. The same posts, met by droplets of several sizes, are one device in
-    millimetres, but several devices in droplet diameters. They are in one picture."""
+    """The parameter sets of each picture. There is one picture for each device. Droplets of several sizes among the
+    same posts are in one picture, too: they have several devices in droplet diameters, but one device in
+    millimetres."""
     every = [place.parts(groups) for place in found]
     # In the order of clogfit's table
     labels = [panel_label(groups, member) for member in groups.members]
@@ -181,7 +183,7 @@ def the_picture(found: Sequence[Place], groups: Groups, path: AnyPath) -> list[P
 
 
 def chosen(rows: Records, number: int) -> list[np.void]:
-    """Chooses the runs with paths that are shown: evenly spaced ones among the ended runs, sorted by distance."""
+    """Chooses the runs whose paths are shown. The ended runs are sorted by distance, and every n-th run is chosen."""
     over = np.sort(rows[np.isin(rows["status"], OVER) & (rows["status"] != b"failed")], order=["distance", "task"])
     return evenly(list(over), number)
 
@@ -210,7 +212,7 @@ def shown_parts(every: Sequence[Part], sweep: pathlib.Path, clogrun: pathlib.Pat
                 jobs: int) -> tuple[list[Part], int]:
     """The parameter sets that have a panel, with their paths, and the number of all parameter sets. Prints a line if
     some parameter sets have no panel.
-    @param num_lines  number of runs of each panel with a path that is drawn as a line
+    @param num_lines  number of runs in each panel whose path is drawn as a line
     @param num_mapped  number of runs in the map of each panel
     @throws UserError  if no run has ended"""
     if not every:
@@ -234,8 +236,8 @@ def in_one_unit(parts: list[Part]) -> list[Part]:
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
-    """A path in the device. It has a gap where it leaves the device at one side and enters it again at the opposite
-    side."""
+    """A path in the device. The path has a gap where the droplet leaves the device at one side and enters the device
+    again at the opposite side."""
     inside = place.wrapped(points)
     jumps = np.flatnonzero((np.abs(np.diff(inside, axis=0)) > [place.length / 2, place.width / 2]).any(axis=1)) + 1
     return np.insert(inside, jumps, np.nan, axis=0)
@@ -279,7 +281,7 @@ def sites(points: Numbers, reach: float) -> list[tuple[Numbers, int]]:
     return found
 
 
-ROUND_OFF = 1e-6  # of the release of a droplet
+ROUND_OFF = 1e-6  # Largest rounding error of the place of a release [sigma].
 
 
 def has_daughters(rows: Records) -> bool:
@@ -288,9 +290,10 @@ def has_daughters(rows: Records) -> bool:
 
 
 def came_past(place: Place) -> tuple[Numbers, Numbers]:
-    """Places along the flow, and for each place the fraction of droplets that passed it. As in clogfit, a droplet
-    counts only at places downstream of its release, and not if it was still moving towards them. Without entrance and
-    exit, a place has periodic images; its first image downstream of the release counts.
+    """Places along the flow, and for each place the fraction of droplets that passed it. A droplet counts at a place
+    only if the place is downstream of the release. Droplets that were still moving upstream of the place at the end of
+    their run do not count. clogfit has the same rules. Without entrance and exit, a place has periodic images; its
+    first image downstream of the release counts.
     @return the places, and the fractions, which are NaN where no droplet counts"""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2

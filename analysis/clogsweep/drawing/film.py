@@ -184,8 +184,8 @@ class Film:
         self._speeds = None
         if colour == "speed":
             self._speeds = trajectory.interface_speeds(self._run) / self._run.row["terminal_speed"]
-            # Speeds above this limit have the brightest colour. Otherwise a few fast moments would make all other
-            # moments dark.
+            # Speeds above this limit have the brightest colour. Without a limit, a few fast moments would make all
+            # other moments dark.
             self._outline.set_norm(matplotlib.colors.Normalize(0, max(1e-3, np.percentile(self._speeds, 98))))
             self.figure.colorbar(self._outline, cax=self.figure.add_axes((0.92, 0.2, 0.012, 0.6)),
                                  label="speed of the interface $/v_t$")
@@ -287,7 +287,7 @@ def size_for(path: pathlib.Path | None) -> str:
 
 
 def path_of(output: pathlib.Path) -> pathlib.Path:
-    """The file of a film. The file has the requested ending. If none is requested, it ends in .mp4 if ffmpeg is
+    """The file of a film, with the requested ending. If no ending is requested, the file ends in .mp4 if ffmpeg is
     installed, and in .gif otherwise.
     @throws UserError  if such a film cannot be made, or if the file exists"""
     outputs.refuse_ending(output, *ENDINGS)
@@ -331,8 +331,8 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
 
 
 def palette_of(first: Pixels) -> Image.Image:
-    """One palette for all frames. It has the colours of the first frame, shades of the colour bar, greys, and colours
-    that occur only at the end."""
+    """The palette of all frames: the colours of the first frame, shades of the colour bar, greys, and colours that
+    occur only at the end."""
     seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
     bar = style.SCALE(np.linspace(0, 1, SHADES))[:, :3]
     greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)

@@ -160,7 +160,8 @@ def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
 
 def speed_column(groups: Iterable[Group]) -> str:
     """The column with the mean speed. The mean over the runs that went far enough to have a speed is too high, because
-    most of these runs are fast. So the speed of all runs is preferred. Files without dwells do not have this column."""
+    most of these runs are fast. The speed of all runs does not have this bias, and is preferred. Files without dwells
+    do not have the speed of all runs."""
     return OF_ALL_RUNS if any(group.get(OF_ALL_RUNS) is not None for group in groups) else "relative_speed"
 
 

@@ -64,9 +64,10 @@ def colour_of(group: dict[str, Any], groups: Groups) -> str:
 
 
 def draw_on(axes: Axes, measured: list[dict[str, Any]], groups: Groups, label: str) -> None:
-    """Draws a star with an interval for each group that has a value of the abscissa, in the colour of the curve with
-    the group's other values. A group without a value of the abscissa becomes a band over the whole range of the
-    abscissa. If no droplet of a group clogged, an arrow points up from the lower bound."""
+    """Draws the measured groups. A group with a value of the abscissa is a star with an interval. The star has the
+    colour of the curve with the same values of all other parameters. A group without a value of the abscissa becomes a
+    band over the whole range of the abscissa. If no droplet of a group clogged, an arrow points up from the lower
+    bound."""
     drawn = False
     for group in measured:
         colour = colour_of(group, groups)

@@ -25,7 +25,7 @@ def draw(found: Sequence[Prediction], measured: Sequence[Group], confidence: flo
     for label, name, look in (("both", "length", {"color": "0.8", "linewidth": 5}),
                               ("squeezed, by two obstacles", "squeezed", {"color": colours["squeezed"]}),
                               ("wrapped, by one obstacle", "wrapped", {"color": colours["wrapped"]})):
-        # Where only one of the two laws has a length, the line for both also has this length.
+        # If only one of the two lengths is finite, `length` equals this one, so the line for both is not drawn.
         known = [math.isfinite(max(one.squeezed, one.wrapped) if name == "length" else getattr(one, name))
                  for one in found]
         if any(known):

@@ -85,8 +85,8 @@ class Groups:
         return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve for these groups, if one exists. If a fitted curve contains groups of several drawn curves,
-        it belongs to the drawn curve that has its first point."""
+        """The fitted curve for the groups of one drawn curve, if there is one. A fitted curve with groups of several
+        drawn curves is returned only for the drawn curve that has the first point of the fitted curve."""
         for curve in self._fitted["curves"]:
             if any(self._told[curve["points"][0]["group"]] is group for group in members):
                 return curve
@@ -155,8 +155,9 @@ class Groups:
         return from_array or all(name in group["automatic"] for group in self.members)
 
     def _is_of_preset(self, name: str) -> bool:
-        """Whether the parameter's value follows from the abscissa and the preset, because the value is automatic for
-        some presets and a number for others. Several numbers for a model without automatic values were chosen."""
+        """Whether the parameter's value follows from the abscissa and the preset. This is the case if the value is
+        automatic for some presets, and the same number for all others. If there are several numbers, the user chose
+        them."""
         models = {group["model"] for group in self.members if name in group["automatic"]}
         chosen = {group[name] for group in self.members if group["model"] not in models}
         return bool(models) and len(chosen) < 2 and self.follows(name, [self.abscissa, "preset"])
@@ -173,7 +174,8 @@ class Groups:
 
     def curve_parameters(self) -> list[str]:
         """Names of the parameters in which the curves differ."""
-        # Other values, such as the place of an exit, follow from the laboratory or the circles, so they are not needed.
+        # In general, other parameters, such as the place of an exit, follow from the laboratory or from the file of
+        # circles.
         names = [name for name in ("model", "laboratory", "obstacles") if self.varies(name)]
         if self.are_in_mm:
             droplet = [name for name in fits.DROPLETS if self.varies(name) and name != self.abscissa]
@@ -183,8 +185,8 @@ class Groups:
                       if self.varies(name) and name != self.abscissa and self._is_number(name)
                       and not self._is_automatic(name) and not self._is_of_preset(name)
                       and not (names and self.follows(name, names))]
-        # Words and automatic values that follow from labelled parameters add nothing, so they are left out, except for
-        # the interface of a preset. A preset comes before the parameters that it sets.
+        # A label leaves out words and automatic values that follow from its other parameters. A preset is named even
+        # then, if presets with different interfaces occur. A preset comes before the parameters that it sets.
         rest = [name for name in self.columns if name not in names and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
             have_interfaces = name == "preset" and len(self.values(name) & INTERFACES.keys()) > 1
@@ -282,8 +284,8 @@ class Groups:
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:
-        """The name of the only file of circles in the config, for a fit whose sweep is missing. If the config names
-        several files, nothing shows which file has which checksum."""
+        """The checksum and the name of the only file of circles in the config. Without the sweep's file, only the
+        config has names of files. If it names several files, nothing shows which file has which checksum."""
         name = self.settings.get("obstacles", "none")
         if name == "none" or "," in name:
             return {}

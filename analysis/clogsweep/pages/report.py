@@ -256,8 +256,7 @@ def table_of_passages(groups: Groups, sentences: dict[str, str]) -> str:
 
 
 def doubts(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) -> str:
-    """The section about doubts. @param sentences  clogfit's sentences, by the words for doubts that its groups
-    contain"""
+    """The section about doubts. @param sentences  for each doubt that a group may have, the sentence of clogfit"""
     words = []
     for name in dict.fromkeys(name for group in groups.members for name in style.doubts(group)):
         count = sum(name in style.doubts(group) for group in groups.members)

@@ -25,10 +25,10 @@ from .runner import Runner
 if TYPE_CHECKING:
     import pandas
 
-# clogfit's mean speed whose start is not chosen from the data.
+# The column of clogfit with mean speeds from a fixed time on. In other columns this time is chosen from the data.
 STEADY = "relative_speed_steady"
 SPEED_NOTES = [r"distance divided by time, from $5\sigma/v_t$ on; bars: standard errors"]
-# Columns of clogfit that show what holds droplets: the mesh, and the mechanisms.
+# Columns of clogfit with the numbers of droplets that the mesh holds, and of clogs by mechanism.
 HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 
 
@@ -126,9 +126,9 @@ enter("E", "mean speed against line tension for three near-wall drags", "near-wa
       abscissa="line_tension", parameter="near_wall_drag", quantity="speed")
 
 
-# Both models against the sag, which in the article is the sinking of the top: it tends to one diameter for very soft
-# droplets, whereas the centroid sinks by at most half a diameter. For a disk, which has no shape, both are the same.
-
+# The following figures compare both models at equal sags. The article defines the sag as the distance by which the top
+# of a droplet sinks, up to one diameter for very soft droplets. The centroid sinks by half a diameter at most. The top
+# and the centroid of a soft disk sink by the same distance, because a disk cannot change its shape.
 def sags(runner: Runner, config: str, groups: Sequence[Group]) -> list[float]:
     """The sag delta_s of each group, which is the sinking of the top. The sags come from one sweep of droplets on walls, with the line tension or
     stiffness of each group."""

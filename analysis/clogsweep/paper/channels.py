@@ -43,8 +43,7 @@ def parameters(run: Trajectory, orifice: float) -> str:
 
 
 def ending(run: Trajectory) -> str:
-    """The end of a label. For a droplet that did not pass, it names the last position, up to which the droplet is
-    shown."""
+    """The end of a label. If the droplet did not pass, this text states its last position."""
     return "" if run.word("status") == "passed" else f" (stops at $h = {run.table['h'][-1]:.2f}$)"
 
 
@@ -289,8 +288,8 @@ def near_wall_drag(runner: Runner) -> Plate:
 
 
 def meshes(runner: Runner) -> dict[int, Trajectory]:
-    """The passages in Fig. B1 by their number of vertices. The number of vertices is at most a multiple of the number
-    in the config, because the finest run takes most of the time."""
+    """The passages in Fig. B1 by their number of vertices. The finest run takes most of the time, so a figure of
+    reduced size has no run with more than twice the vertices of the config."""
     line_tension, most = (1.08, 4) if runner.size == "full" else (0.83, 2)
     largest = most * int(runner.keys("channel")["vertices"])
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= largest]
@@ -323,13 +322,13 @@ SPRINGS = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]  # perimeter stiffness divided
 
 
 def spring_deviations(runner: Runner, preset: str) -> tuple[Trajectory, dict[float, dict[str, float]]]:
-    """The passages of Fig. B2. @return the last passage, and the deviations `delta_v` and `delta_a` by the ratio of
-    SPRINGS: from the measured profile, or from the profile of the softest springs if there is none"""
+    """The passages of Fig. B2. @return the last passage; for each ratio of SPRINGS, the deviations `delta_v` and
+    `delta_a` from the measured profile, or from the profile of the softest springs if no profile was measured"""
     runs = profiles(runner, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21,
                     terminal_speed=0.028, preset=preset, perimeter_spring="rest", perimeter_stiffness_ratio=SPRINGS)
     files = []
     for ratio, run in zip(SPRINGS, runs):
-        # The reference is cut to a shorter passage, so that all its frames lie within the compared passages.
+        # The passage of the softest springs is made shorter, so that the other passages contain all its places.
         frames = run.table[np.abs(run.table["h"]) < (1.2 if run is runs[0] and not runner.profiles else np.inf)]
         files.append(runner.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
                                   zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))

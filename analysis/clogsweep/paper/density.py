@@ -29,15 +29,14 @@ class DensityFit:
     """A parabola through log lambda as a function of log density, and the density at which the parabola has the
     published length.
 
-    A length from n clogs has a relative error of 1/sqrt(n). The logarithm of the length has the same number as its
-    absolute error.
+    The relative error of a length from n clogs is 1/sqrt(n). This is also the absolute error of log lambda.
     """
 
     coefficients: np.ndarray[Any, Any]  # highest power first
     covariance: np.ndarray[Any, Any]
     chi_squared: float
     degrees_of_freedom: int
-    density: float  # [1/sigma^2]
+    density: float  # [1/sigma^2].
     lower: float  # Lower end of the 95 % interval; the interval includes the error of the fit and the published error.
     upper: float
 

@@ -25,19 +25,20 @@ if TYPE_CHECKING:
     import pandas
 
 FOLDER = programs.JOBS.parent / "docs" / "gallery" / "rows"
-# Files from before daughters lack these columns. Disks do not break up, so they have no neck.
+# Files that are older than break-up=daughters lack these columns. Disks do not break up, so they have no neck.
 BREAKING = ["break_up_neck", "speed_exponent"]
 # The parameters that differ between the runs of at least one sweep of jobs/figures.
 PARAMETERS = ["model", "preset", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter",
               "obstacle_density", "obstacle_filling", "friction", "near_wall_drag", "vertices", "inertia",
               *BREAKING]
-# What a length, a speed, or a doubt about them follows from.
+# Columns from which clogfit computes lengths, speeds and doubts.
 RESULTS = ["status", "distance", "sound_distance", "time", "steady_distance", "steady_time", "mechanism", "stability",
            "failed_by", "wrapped_support", "mesh_hold", "friction_use", "shape_parameter", "longest_dwell",
            "first_contact_at", "healed_crossings", "processor_seconds"]
 WORDS = ["model", "preset", "obstacle_filling", "status", "mechanism", "stability", "failed_by"]
-DIGITS = {"distance": 12, "sound_distance": 12, "obstacle_density": 12, "wall_stiffness": 12}  # of other numbers: 6
-# The curves of P(r) are the largest part of clogfit's JSON, and one figure draws one of them.
+# Digits of these numbers. All other numbers have 6 digits.
+DIGITS = {"distance": 12, "sound_distance": 12, "obstacle_density": 12, "wall_stiffness": 12}
+# Curves of P(r) are the largest part of clogfit's JSON. A single figure needs one of these curves.
 LARGE = ("survival", "censored_distances")
 MOST_CURVES = 4
 

@@ -17,8 +17,8 @@ from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure
 from .runner import Runner
 
-# The post: x, y and diameter [sigma]. A droplet falls onto it from 7 sigma upstream. The path of the droplet is 0.08
-# sigma beside the centre of the post.
+# The post: x, y and diameter [sigma]. A droplet falls onto the post from 7 sigma upstream, along a path that is
+# 0.08 sigma beside the centre of the post.
 POST = (47.0, 5.08, 0.3)
 # Vertices that are closer to the post's surface than this belong to a part of the interface over the post [sigma].
 NEAR = 0.12
@@ -94,7 +94,8 @@ def tensions_over_a_post(runner: Runner) -> Plate:
     held, slides = over_a_post(runner, "on"), over_a_post(runner, "off")
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 3.8), width_ratios=[1.3, 1])
     last = held.polygons[-1][:, ::2]  # Without the middles of the edges.
-    # The moment at which the other droplet, which slides, passes the position at which this droplet is held.
+    # One droplet is held, and the other slides past the same position. `passing` is the outline of the other droplet at
+    # this position.
     beyond = slides.polygons[:, 0].mean(axis=1) - held.polygons[-1][0].mean()
     passing = slides.polygons[int(np.argmin(np.abs(beyond)))][:, ::2]
     edges = np.stack([last.T, np.roll(last, -1, axis=1).T], axis=1) - POST[:2]

@@ -1,5 +1,5 @@
-"""What the outlines of a replayed droplet show: ends that move against the drive, and obstacles that it wraps and gaps
-that it fills at the same time."""
+"""Examines the outlines of a replayed droplet. Finds ends that move against the drive, and frames in which the droplet
+wraps an obstacle and fills a gap at the same time."""
 
 import itertools
 

@@ -101,8 +101,8 @@ class Runner:
         return CONFIGS / f"{name}.{self.size}.cfg"
 
     def _points(self, name: str) -> list[str]:
-        """The arguments for the points file beside a config. The points have different meshes. If --set overrides one
-        of the file's keys, all values of its other keys are combined, and a line says so."""
+        """The arguments for the points file beside a config. The points differ in their meshes. If --set overrides a
+        key of the file, the points become lists, one for each of the other keys, and a message states this."""
         file = self.config(name).with_suffix(".csv")
         if not file.exists():
             return []
@@ -130,8 +130,8 @@ class Runner:
         in_file = config_keys(self.config(name))
         keys = self.keys(name) | own_keys
         if own_keys.get("obstacle-layout") in ("channel", "wall"):
-            # In a channel or on a wall nothing is random or periodic. So a --set of a key for random or periodic arrays
-            # concerns other sweeps.
+            # In a channel or on a wall nothing is random or periodic. If --set has a key of random or periodic arrays,
+            # this key is meant for other sweeps.
             keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
         return ["--config", str(self.config(name)),
                 *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]

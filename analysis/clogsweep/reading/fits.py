@@ -22,7 +22,8 @@ def as_file(word: object) -> object:
     return f"./{word}" if isinstance(word, pathlib.PurePath) and len(word.parts) == 1 and not word.suffix else word
 
 
-PLACES = {"channel": "channels", "wall": "a flat wall"}  # where droplets have no clogging length, by obstacle_filling
+# Values of obstacle_filling for which droplets have no clogging length, and their names in messages.
+PLACES = {"channel": "channels", "wall": "a flat wall"}
 
 
 def refuse_mixed(fillings: Iterable[str], message: str) -> None:
@@ -49,11 +50,11 @@ def follows(groups: Collection[Group], name: str, others: Iterable[str]) -> bool
 
 
 def in_millimetres(fit: dict[str, Any]) -> dict[str, Any]:
-    """Converts a fit of several droplets in a laboratory. The diameter and the tilt become parameters, and lengths are
-    converted to mm: in droplet diameters, the same array has other lengths for each droplet. Lattices have the
-    requested angle, because the possible angles differ between the droplets. "in_table" of a group contains its values
-    as in the sweep's table, and "following" names the parameters with values that follow from the droplet. Any other
-    fit stays unchanged."""
+    """Converts a fit of several droplets in a laboratory. The diameter and the tilt become parameters. Lengths are
+    converted to mm, because in droplet diameters the lengths of one array differ between the droplets. The angle of a
+    lattice is the requested angle, because each droplet has other possible angles. "in_table" of a group contains its
+    values as in the sweep's table, and "following" names the parameters with values that follow from the droplet. Fits
+    of other sweeps stay unchanged."""
     groups = fit["groups"]
     if "laboratory" in fit or "in_mm" in fit or not groups or not all(group.get("diameter_mm") for group in groups):
         return fit
@@ -78,8 +79,8 @@ def droplet_columns() -> dict[str, Column]:
 
 
 def fitted(clogfit: pathlib.Path, sweep: AnyPath, *options: object) -> tuple[dict[str, Any], dict[str, str]]:
-    """The answer of clogfit for the present file, and stored.circle_files(). @throws ProgramFailed  with clogfit's
-    reason"""
+    """The JSON output of clogfit for the present content of the file, and the result of stored.circle_files().
+    @throws ProgramFailed  with clogfit's reason"""
     fit = run_clogfit(clogfit, sweep, *options)
     with stored.opened(sweep, folder=clogfit.parent) as file:
         return fit, stored.circle_files(file)

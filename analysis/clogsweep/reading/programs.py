@@ -36,8 +36,8 @@ def reason(text: str) -> str:
 
 
 def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """The folder with clogsweep, clogrun and clogfit. If `folder` is given, it is this folder. Otherwise it is the
-    first that exists of CLOG_BIN, the folder of clogsweep in the PATH, and the folder beside this package.
+    """The folder with clogsweep, clogrun and clogfit: `folder` if it is given, or else the first existing folder among
+    CLOG_BIN, the folder of clogsweep in the PATH, and the folder beside this package.
 
     @throws UserError  if the programs are not there
     """

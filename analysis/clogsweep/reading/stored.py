@@ -81,8 +81,8 @@ def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
 
 @functools.lru_cache
 def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
-    """Lets clogsweep check a sweep without a seal, and prints the warnings. Such a sweep was copied or changed by
-    another program. The check is repeated only if the file has changed since. @throws Damaged; UserError"""
+    """Lets clogsweep check a sweep without a seal, and prints the warnings. A sweep has no seal if another program
+    copied or changed the file. The check is repeated only if the file has changed since. @throws Damaged; UserError"""
     try:
         clogsweep = programs.programs_in(folder) / "clogsweep"
     except UserError as error:
@@ -223,7 +223,7 @@ def observed_distances(rows: Records) -> Numbers:
 
 
 def warn_of_failures(rows: Records, outcome: str) -> None:
-    """Prints how many runs failed, if any did. @param outcome  what these runs count as"""
+    """If runs failed, prints how many. @param outcome  the word for the assumed outcome of these runs, such as whole"""
     failed = rows[rows["status"] == b"failed"]
     if len(failed):
         print(f"{len(failed)} of {len(rows)} runs failed and count as {outcome}; the first one: "

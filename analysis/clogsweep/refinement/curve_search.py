@@ -21,7 +21,7 @@ from .membership import Membership, Values
 MOST_VALUES = {1: 100, 2: 13}  # Largest number of values of each key, by the number of keys.
 FIRST_VALUES = {1: 7, 2: 4}
 MOST_COMBINATIONS = 500
-COSTLY = 0.1  # A sentence names the work on values without clogs if it is a larger share of all work than this.
+COSTLY = 0.1  # If values without clogs took a larger share of all work, a message states this.
 SHARE_OF_ROUND = 0.5  # Work of a round, divided by the work of all earlier rounds.
 
 
@@ -153,7 +153,7 @@ class CurveSearch:
             words.append(f"how much {goal} takes is known when its place is, after the first round")
         if goal.kind == "curve":
             # To reach an error e of log lambda, each independent place of the curve needs 1/e^2 clogs. A straight line
-            # has two independent places. The roughest curve has one at each value.
+            # has two independent places. In the roughest curve all values are independent places.
             error = math.asinh(goal.precision) / features.normal_deviate(goals.CONFIDENCE)
             smooth, rough = 2 / error**2, len(self._first) / error**2
             words.append(f"{goal} takes about {smooth:.0f} clogs of a curve as smooth as a straight line, {rough:.0f} of one "

@@ -1,5 +1,5 @@
-"""Runs clogsweep round by round. The points of a round are written to the disk before the round starts, so that it
-continues with the same points after a kill."""
+"""Runs clogsweep round by round. The points of a round are written to the disk before the round starts, so that a round
+that is killed continues with the same points."""
 
 import os
 import pathlib
@@ -89,8 +89,7 @@ class Launcher:
         may have been stopped"""
         if self.is_warned():
             return INCOMPLETE
-        # The launcher has its own session. So the launcher receives Ctrl-C from a terminal only once, through this
-        # process.
+        # The launcher has its own session, so that it receives Ctrl-C from a terminal only once, through this process.
         self._process = subprocess.Popen([*self._words, *map(str, arguments)], start_new_session=True)
         if self.is_warned():  # The warning came while the launcher started.
             self._process.send_signal(signal.SIGUSR1)
@@ -106,8 +105,8 @@ def refine(search: Search, members: Membership, launcher: Launcher, options: Seq
            output: pathlib.Path, max_hours: float) -> int:
     """Runs rounds until the search ends.
 
-    One file contains the points of all rounds. The points of a round are added to it before the round starts. So after
-    an interruption the unfinished round is completed before the next round is planned.
+    The file `points` contains the points of all rounds. The points of a round are added to this file before the round
+    starts, so an interrupted round is completed before the next round is planned.
     @param options  of clogsweep
     @return an exit code of clogsweep"""
     end = time.monotonic() + max_hours * HOUR

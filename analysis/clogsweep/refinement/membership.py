@@ -1,9 +1,9 @@
 """Finds the rows of a file that belong to the values of a search.
 
 A row does not store the parameters as they were given, but as clogsweep resolved them. For instance, the density of a
-saturated array follows from the gap, and the box of a lattice follows from its angle. So clogsweep itself resolves the
-values of the search: `--points ... --dry-run --format json` prints the columns in which the tasks differ. A row belongs
-to a value if all its parameters are those that clogsweep resolves for this value.
+saturated array follows from the gap, and the box of a lattice follows from its angle. For this reason clogsweep itself
+resolves the values of the search: `--points ... --dry-run --format json` prints the columns in which the tasks differ.
+A row belongs to a value if all parameters of the row equal those that clogsweep resolves for this value.
 """
 
 from collections.abc import Callable, Sequence

@@ -44,7 +44,7 @@ CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 PASSED_COLOUR = "0.62"
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 MARKER_WORDS = {"wrapped": "circles", "squeezed": "squares", "hybrid": "diamonds", "other": "crosses"}
-SCALE = matplotlib.colormaps["cividis"]  # has no colour of a mechanism
+SCALE = matplotlib.colormaps["cividis"]  # This scale has none of the colours of mechanisms.
 PASSAGES = matplotlib.colormaps["YlOrBr"]  # Small fractions are light, so that lines and markers remain visible.
 OBSTACLE = "0.72"
 NOTE_SIZE = 8
@@ -111,7 +111,7 @@ def mark(kind: str, groups: Collection[Group]) -> str | None:
 
 
 def mark_legend(legend: Legend, handles: Sequence[Any]) -> None:
-    """Marks legend entries: the entry of a marked artist gets the name of the same groups."""
+    """Marks legend entries: if an artist is marked with groups, its legend entry is marked with these groups, too."""
     for handle, text in zip(handles, legend.get_texts()):
         name = (handle.lines[0] if hasattr(handle, "lines") else handle).get_gid()
         if name:

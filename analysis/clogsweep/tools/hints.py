@@ -14,5 +14,5 @@ AnyPath = str | os.PathLike[str]
 Column = dict[str, Any]  # A parameter as clogsweep describes it, with its name, symbol, unit and default.
 Group = dict[str, Any]  # A group in clogfit's JSON, with the common parameters of its runs and their results.
 Numbers = npt.NDArray[np.float64]
-Point = Sequence[float] | Numbers  # x and y
+Point = Sequence[float] | Numbers  # x and y.
 Records = npt.NDArray[np.void]  # Rows of a table with named columns.

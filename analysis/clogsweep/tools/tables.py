@@ -15,7 +15,7 @@ from .errors import UserError
 
 # Errors that spreadsheets write instead of a value: #N/A, #DIV/0!, #REF!, #WERT!, Err:502, and those of other languages.
 ERROR_WORD = re.compile(r"#[^\sa-z]{2,}\s*[!?]|(?i:#(n/a|na|nv|n/d|n/b|i/t|н/д|yok|hiányzik|getting_data))|(?i:(err|fehler|erreur):[0-9]+)")
-HASHES = re.compile("##+")  # Excel writes such cells in a column that is too narrow.
+HASHES = re.compile("##+")  # Excel writes ### into the cells of a column that is too narrow.
 
 
 def read_text(path: str) -> str:
@@ -69,7 +69,8 @@ class Numbers:
         self._first: dict[str, str] = {}  # The first number with a comma, and the first with a point.
 
     def read(self, cell: str, column: str) -> float:
-        """@throws UserError  that names the column, also if some numbers so far have a comma, and others a point"""
+        """The number in a cell. @throws UserError  that names the column, also if some numbers so far have a comma, and
+        others a point"""
         for mark in ",.":
             if mark in cell:
                 self._first.setdefault(mark, cell)

@@ -36,7 +36,7 @@ class CommandLine {
   /// Declares an option for all further words without dashes.
   CommandLine& words(const char* name, const char* help);
   /// Declares the commands that the first word may name instead of a file; the message about a misspelt word
-  /// suggests them.
+  /// suggests these commands.
   void add_commands(std::vector<std::string> names) { commands_ = std::move(names); }
   /// Declares the remedy in the message about surplus words, e.g. "one sweep file is read at a time".
   void explain_surplus_words(std::string remedy) { surplus_remedy_ = std::move(remedy); }
@@ -87,7 +87,7 @@ class CommandLine {
       "0.2,0.3  1..50  'lin(a,b,n)'  'log(a,b,n)'  (quotes, since shells read parentheses)"};
   boost::program_options::options_description keys_{"Keys of all else"};
   boost::program_options::positional_options_description positional_;
-  std::set<std::string> words_;  // options with values that may be words without dashes
+  std::set<std::string> words_;  // options whose value may be a word without dashes
   std::vector<std::string> commands_;
   std::string surplus_remedy_ = "options start with --, settings are key=value";
   boost::program_options::variables_map values_;

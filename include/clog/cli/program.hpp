@@ -31,7 +31,7 @@ using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
 /// Parses the line, and prints the answer to --help or --version. Returns whether there is anything else to
 /// do.
-/// @param libraries  names and versions, printed after the program's own
+/// @param libraries  names and versions of libraries, printed after those of the program
 bool parse_command(CommandLine& line, int argc, const char* const* argv, const NamedTexts& libraries = {});
 
 /// The origin of a file: program, version, `git describe` of the program's sources, compiler, config, command

@@ -28,11 +28,11 @@ std::optional<double> degrees_of(const std::string& unit);
 struct UnitsComment {
   std::optional<std::string> unit, droplet;
 };
-/// Anything else in a comment is skipped.
+/// Reads the units in a comment, and skips the rest of the comment.
 UnitsComment units_in(std::string comment);
 
-/// Whether a cell is an error of a spreadsheet: `#N/A`, `#DIV/0!`, `#REF!`, `#WERT!`, `Err:502`, and the like
-/// in other languages. All of them consist of upper case; most begin with # and end with ! or ?.
+/// Whether a cell is an error of a spreadsheet: `#N/A`, `#DIV/0!`, `#REF!`, `#WERT!`, `Err:502`, and their
+/// translations. Most are in upper case, begin with # and end with ! or ?.
 bool is_error_word(std::string_view cell);
 
 /// A line of a table.
@@ -41,15 +41,15 @@ struct TableLine {
   std::vector<std::string> cells;  ///< without quotes and blanks around them; empty cells are kept
   char separator;                  ///< the separator between cells; ' ' means one or more blanks
 };
-/// The cells without empty ones at the end beyond the number of columns: a spreadsheet adds such cells.
+/// Removes empty cells beyond the last column, which some spreadsheets add.
 std::vector<std::string> without_surplus_cells(std::vector<std::string> cells, std::size_t num_columns);
 
 /// Reads a table line by line. Supports files of spreadsheets, pandas, R and ImageJ: the first line shows
 /// whether semicolons, tabs, commas or blanks separate the cells, unless `sep=;` precedes it; cells may be
-/// quoted. Text that is not UTF-8 is read as Latin-1. Non-breaking blanks count as blanks. Blank lines and
-/// those that begin with # are ignored, except that a blank line between the lines of a table of one column
-/// is an empty cell.
-/// @param each  called with each line; path and line number are added to an Error that it throws
+/// quoted. Text that is not UTF-8 is read as Latin-1. Non-breaking blanks count as blanks. Lines that begin
+/// with # are ignored. Blank lines are ignored, too, but in a table of one column a blank line between two
+/// other lines is an empty cell.
+/// @param each  called with each line; if it throws an Error, path and line number are added to the text
 /// @param comment  called with lines that begin with #
 /// @throws Error as read_text(), for a quote without an end, or for a cell that is an error of a spreadsheet
 void read_table(const std::string& path, const std::function<void(const TableLine& line)>& each,

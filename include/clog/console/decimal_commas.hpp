@@ -13,12 +13,12 @@ bool may_have_thousands(std::string_view number);
 class DecimalCommas {
  public:
   /// The number with a decimal point in place of its comma.
-  /// @throws Error if some numbers so far have a comma, and others a point
+  /// @throws Error if some numbers so far have a comma and others have a point
   std::string with_point(std::string number);
   /// The number in a cell with a decimal point. @param separator  between the cells of the table; if this is
   /// a comma, a comma in a quoted cell may separate thousands
-  /// @throws Error, which begins with the column's name, as with_point() or if the comma may separate
-  /// thousands
+  /// @throws Error that begins with the column's name, if some numbers have a comma and others have a point,
+  /// or if the comma may separate thousands
   std::string with_point(const std::string& column, const std::string& cell, char separator);
   /// @throws Error if every comma so far may separate thousands, so that the numbers are ambiguous.
   /// @param path  of the table

@@ -3,7 +3,7 @@
 namespace clog::console {
 
 inline constexpr int exit_success = 0;
-/// The program failed, or verify found damage, replay found different bits, or doctor found a problem.
+/// The program failed, or verify found damage, or replay computed different bits, or doctor found a problem.
 inline constexpr int exit_internal_fault = 1;
 inline constexpr int exit_user_fault = 2;
 /// The program was stopped before the end; the same command resumes its work.

@@ -5,7 +5,7 @@
 namespace clog::console {
 
 /// Numbers for people, with as many figures as their uncertainty justifies.
-/// analysis/clogsweep/tools/rounded.py has the same rule.
+/// analysis/clogsweep/tools/rounded.py rounds in the same way.
 
 inline constexpr int least_figures = 3;
 

@@ -5,9 +5,9 @@
 namespace clog::console {
 
 /// Call this first in every program. If one of the descriptors 0 to 2 is closed, opens it on /dev/null.
-/// Otherwise the next file or socket would get its number and receive the program's output. Ignores SIGPIPE,
-/// so that a closed reader does not end the program; printing to std::cout then throws. Ignores SIGXFSZ, so
-/// that writing a file beyond its size limit fails instead of ending the program.
+/// Otherwise the next file or socket would get the number of the closed descriptor and receive the program's
+/// output. Ignores SIGPIPE, so that a closed reader does not end the program; printing to std::cout then
+/// throws. Ignores SIGXFSZ, so that writing a file beyond its size limit fails instead of ending the program.
 void prepare_streams();
 
 /// Prints a line on the error stream, control characters escaped.

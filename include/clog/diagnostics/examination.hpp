@@ -13,7 +13,7 @@ struct Finding {
   std::string remedy = {};  ///< empty if there is no problem
 };
 
-/// Checks whether a sweep on these ranks, with this `output`, would have problems.
+/// Checks for problems that a sweep on these ranks, with this `output`, would have.
 std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output);
 
 /// Under srun without PMIx, or under the mpirun of another MPI, every process would assume that it is the
@@ -21,8 +21,8 @@ std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::str
 void refuse_to_be_alone(int num_ranks);
 
 /// The setting that lets ranks use every core of their host.
-/// @param mpi  name and version, as Communicator::library_version() gives them. Since Open MPI 5, its
-/// launcher PRRTE reads variables of other names.
+/// @param mpi  name and version, as Communicator::library_version() gives them. The launcher of Open MPI 5
+/// and later, PRRTE, reads variables with other names.
 std::string how_to_unbind(const std::string& mpi);
 
 }  // namespace clog::diagnostics

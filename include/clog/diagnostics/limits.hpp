@@ -4,12 +4,12 @@
 
 namespace clog::diagnostics {
 
-// Resources of the host that this process may use. Containers and batch systems may grant only a part,
-// through control groups (Linux, Documentation/admin-guide/cgroup-v2.rst): the tightest limit of the
+// Resources of the host that this process may use. Containers and batch systems may grant only a part of the
+// host, through control groups (Linux, Documentation/admin-guide/cgroup-v2.rst). The tightest limit of the
 // process's own group and all enclosing groups counts. Limits of version 1 are ignored.
 
-/// Number of cores that the control groups grant to all of their processes together: the processor time that
-/// these processes may use per period, divided by the period. 0 if there is no limit.
+/// Number of cores that the control groups grant to all processes in them together. It is the processor time
+/// that these processes may use per period, divided by the period. 0 if there is no limit.
 /// @param root  folder that contains proc and sys
 double granted_cores(const std::filesystem::path& root = "/");
 

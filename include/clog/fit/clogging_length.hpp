@@ -12,7 +12,7 @@ struct Observation {
   bool clogged;
 };
 
-/// Whether all distances are finite. If one of them is not, results are NaN.
+/// Whether all distances are finite. If a distance is not finite, the results of a fit are NaN.
 bool all_finite(std::span<const Observation> runs);
 
 struct Interval {
@@ -46,9 +46,10 @@ struct CloggingLength {
 /// every run has clogged, 2 S/lambda is chi-squared distributed with exactly 2d degrees of freedom (Epstein
 /// and Sobel 1953). Here runs are censored after a given time, so d is as random as S. If the runs ended just
 /// before their next clog, 2d + 2 degrees of freedom would be exact. If they ended just after a clog, 2d
-/// would be exact. The number in between, 2d + 1, has nearly the nominal coverage (Cox, Biometrika 40, 354
-/// (1953); Lawless, Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a
-/// one-sided lower bound, S/log(1/(1 - confidence)), which corresponds to 2d + 2.
+/// would be exact. The interval with 2d + 1, the number in between, has nearly the nominal coverage (Cox,
+/// Biometrika 40, 354 (1953); Lawless, Statistical Models and Methods for Lifetime Data, ch. 4). Without
+/// clogs there is a one-sided lower bound, S/log(1/(1 - confidence)), which corresponds to 2d + 2 degrees of
+/// freedom.
 ///
 /// `profile` contains all lambda for which 2 (l(S/d) - l(lambda)) is below the quantile of chi-squared with
 /// one degree of freedom, where l(lambda) = -d log lambda - S/lambda.
@@ -58,8 +59,8 @@ struct CloggingLength {
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
 
-/// Half of the chi-squared interval's width divided by the estimate; infinite without clogs. The interval is
-/// that of a sweep in which all runs have clogged; with censored runs it is a little narrower.
+/// Half of the chi-squared interval's width divided by the estimate; infinite without clogs. The function
+/// assumes that all runs have clogged; with censored runs the interval is a little narrower.
 double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,

@@ -10,7 +10,7 @@ namespace clog::fit {
 struct Pair {
   Observation here;
   Observation there;
-  bool is_alike = false;  ///< both end at the same place, or neither clogs: the pair shows no difference
+  bool is_alike = false;  ///< the pair shows no difference: both end at the same place, or neither clogs
 };
 
 /// Ratio of the clogging length `here` to the clogging length `there`.
@@ -27,15 +27,15 @@ struct LengthRatio {
   bool is_paired = false;   ///< whether `interval` is `paired`, and `ratio` is `paired_ratio`
   int num_pairs = 0;
   int num_unlike = 0;  ///< pairs that are not alike
-  /// Correlation between log lambda here and there over the pairs, by the jackknife. If it is positive,
-  /// pairing helps: the error of the ratio is smaller by the factor `gain` than with two independent lengths.
+  /// Correlation between log lambda here and log lambda there, over the pairs, by the jackknife. If the
+  /// correlation is positive, pairing helps: it makes the error of the ratio smaller by the factor `gain`.
   double correlation = 0;  ///< NaN where it is unknown
   double gain = 0;  ///< ratio of the unpaired to the paired standard error of the same pairs; NaN if unknown
 };
 
 /// `interval` is the paired interval if pairs certainly help: the correlation is positive (one-sided, 2.5 %),
-/// and the two runs of at least ten pairs differ. With fewer such pairs, the coverage of the interval is too
-/// low (docs/notes/2026-11-24-paired-intervals.md).
+/// and the two runs of at least ten pairs differ. With fewer differing pairs, the coverage of the interval is
+/// too low (docs/notes/2026-11-24-paired-intervals.md).
 /// @param here, there  all runs, including those of pairs
 /// @throws std::invalid_argument unless 0 < confidence < 1
 LengthRatio fit_length_ratio(std::span<const Observation> here, std::span<const Observation> there,

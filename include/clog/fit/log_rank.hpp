@@ -7,7 +7,7 @@
 namespace clog::fit {
 
 /// The p-value of the hypothesis that both sides have equal P(r), whatever the law of P(r). The test is the
-/// log-rank test (N. Mantel, Cancer Chemotherapy Reports 50, 163 (1966)), two-sided, with the chi-squared
+/// two-sided log-rank test (N. Mantel, Cancer Chemotherapy Reports 50, 163 (1966)), with the chi-squared
 /// distribution. All runs count as independent. NaN if one side has no runs, or if no clog distinguishes the
 /// sides.
 double log_rank_p_value(std::span<const Observation> here, std::span<const Observation> there);

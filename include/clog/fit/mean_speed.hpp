@@ -23,7 +23,7 @@ struct Travel {
 /// Speed of all runs together, (sum of distances)/(sum of times), which weighs a run by its time. The error
 /// is the jackknife error over runs, sqrt((n - 1)/n sum (R_i - mean)^2), where R_i is the ratio without run
 /// i. NaN if a sum is not finite.
-/// @param runs  one entry each; runs with a NaN are excluded
+/// @param runs  one entry for each run; runs with a NaN are excluded
 MeanSpeed fit_pooled_speed(std::span<const Travel> runs);
 
 }  // namespace clog::fit

@@ -20,9 +20,9 @@ struct Migration {
 /// no mean speed, either.
 inline constexpr double shortest_migration = 0.5;
 
-/// Ratio of two sums over the runs that went at least shortest_migration: (sum of across)/(sum of along). So
-/// short runs, with their scattered ratios, have little weight. The standard error is the linearised error of
-/// a ratio estimate (Cochran, Sampling Techniques, ch. 6).
+/// Ratio of two sums over the runs that went at least shortest_migration: (sum of across)/(sum of along). In
+/// this ratio of sums, short runs have little weight; their own ratios scatter widely. The standard error is
+/// the linearised error of a ratio estimate (Cochran, Sampling Techniques, ch. 6).
 Migration fit_migration(std::span<const Displacement> runs);
 
 }  // namespace clog::fit

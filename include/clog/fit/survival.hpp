@@ -13,7 +13,7 @@ Interval log_log_interval(double probability, double log_variance, double confid
 
 /// A step of the estimated P(r), the probability to travel farther than r without a clog.
 struct SurvivalStep {
-  double distance;        ///< distance of one or more clogs [sigma]
+  double distance;        ///< distance at which one or more runs clogged [sigma]
   int num_at_risk;        ///< runs that reached this distance
   int num_clogs;          ///< number of these runs that clogged at this distance
   double probability;     ///< P just beyond this distance
@@ -21,18 +21,18 @@ struct SurvivalStep {
   Interval interval;      ///< interval of P; NaN where P is 0
 };
 /// Kaplan and Meier's product-limit estimate (J. Am. Stat. Assoc. 53, 457 (1958)). It assumes no law, and
-/// censored runs count up to the distance at which they were last seen. There is one step per distance with
-/// clogs, in increasing order; at equal distances clogs come before censorings. Intervals are symmetric in
+/// censored runs count up to the distance at which they were last seen. There is one step for each distance
+/// with clogs, in increasing order. At equal distances, clogs precede censorings. Intervals are symmetric in
 /// log(-log P), so that they stay within 0 and 1 (Kalbfleisch and Prentice, The Statistical Analysis of
 /// Failure Time Data, ch. 1).
 /// @throws std::invalid_argument unless 0 < confidence < 1
 std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, double confidence = 0.95);
 
 /// Tests whether P(r) is an exponential, by the likelihood ratio against Weibull's law P(r) =
-/// exp(-(r/scale)^shape). If the shape is above 1, clogging gets likelier with distance; if it is below 1,
-/// clogging gets rarer, or runs differ from each other. Distances below a thousandth of the mean are raised
-/// to a thousandth of the mean, because Weibull's law excludes zero. The p-value is asymptotic: p < 0.05
-/// occurs in 5, 6.5 and 11 % of exponential samples of 50, 10 and 5 clogs.
+/// exp(-(r/scale)^shape). If the shape is above 1, clogs become more frequent with distance. If it is below
+/// 1, clogs become rarer, or the runs differ from each other. Distances below a thousandth of the mean are
+/// raised to a thousandth of the mean, because Weibull's law excludes zero. The p-value is asymptotic: p <
+/// 0.05 occurs in 5, 6.5 and 11 % of exponential samples of 50, 10 and 5 clogs.
 struct WeibullTest {
   int num_clogs = 0;
   /// NaN for fewer than two clogs, if nothing moved, or for infinite distances. Infinite if all clogs are at
@@ -41,15 +41,15 @@ struct WeibullTest {
   double scale = 0;                   ///< [sigma]
   double exponential_likelihood = 0;  ///< maximum of the log-likelihood
   double weibull_likelihood = 0;      ///< maximum of the log-likelihood
-  double likelihood_ratio = 0;        ///< twice the difference, chi-squared with one degree of freedom
-  double p_value = 0;                 ///< probability of a ratio at least as large if P(r) is exponential
+  double likelihood_ratio = 0;  ///< twice the difference of the maxima; chi-squared, one degree of freedom
+  double p_value = 0;           ///< probability of a ratio at least as large if P(r) is exponential
 };
 WeibullTest test_exponentiality(std::span<const Observation> runs);
 
-/// Finds the groups with a P(r) that is not exponential: those with p < 0.05 by Holm's step-down test (Scand.
-/// J. Stat. 6, 65 (1979)) of all groups with ten clogs or more. If all groups are exponential, only one table
-/// in twenty marks any group, however many groups it has. Groups with fewer clogs are not tested, because
-/// their p would be too small.
+/// Finds the groups with a P(r) that is not exponential: groups with p < 0.05 in Holm's step-down test
+/// (Scand. J. Stat. 6, 65 (1979)) of all groups with ten clogs or more. If all groups are exponential, only
+/// one table in twenty marks any group, however many groups it has. Groups with fewer clogs are not tested,
+/// because the p-value would be too small.
 std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups);
 
 /// Whether at least half of the distances are equal to another distance. For independent droplets this

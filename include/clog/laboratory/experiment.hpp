@@ -5,9 +5,9 @@
 namespace clog::laboratory {
 
 /// Converts a number with its unit, e.g. "3.5 mm" or "7mm/s", to SI units.
-/// @param units  what is measured: "length", "number per area", "time", "speed", "tension", "density" or
+/// @param units  the measured quantity: "length", "number per area", "time", "speed", "tension", "density" or
 /// "angle" (in radians)
-/// @throws Error naming the units that are understood
+/// @throws Error that names the possible units
 double to_si(const std::string& text, const std::string& units);
 /// The inverse of to_si(): twelve digits and the usual unit, e.g. "3.5 mm".
 std::string in_usual_unit(double value, const std::string& units);

@@ -18,12 +18,12 @@ struct MeasuredSpeed {
   double exponent = 0;
 };
 
-/// An experiment as a lab.cfg describes it.
+/// The experiment that a file lab.cfg describes.
 struct Laboratory {
   Experiment experiment;  ///< if not known, terminal_speed is 0 and interfacial_tension NaN
   double thickness = std::numeric_limits<double>::quiet_NaN();  ///< thickness of the cell [m]
-  /// Gamma of the model divided by Gamma_exp. The default fits the three droplets of Cheng et al. They
-  /// explain the difference between the two Gammas as follows: it "likely stems from the fact that we compare
+  /// Gamma of the model divided by Gamma_exp. The default fits the three droplets of Cheng et al. These
+  /// authors write that the difference between the two Gammas "likely stems from the fact that we compare
   /// values of the dimensionless line tension in 2D to values of the dimensionless surface tension in 3D".
   double tension_ratio = 0.3;
   std::optional<MeasuredSpeed> measured = {};  ///< the speed that was scaled to the terminal speed, if any
@@ -35,11 +35,11 @@ struct Laboratory {
 /// @throws Error naming file and key
 std::vector<Laboratory> read_laboratories(const std::string& path);
 constexpr const char* give_one_droplet = "give one diameter and one angle";
-/// Reads a file of one laboratory. @throws Error as read_laboratories(), and if there are several
-/// laboratories
-/// @param remedy  text of the message that says what to do if there are several
+/// Reads a file that describes one laboratory. @throws Error as read_laboratories(), and if the file
+/// describes several laboratories
+/// @param remedy  text of the message that says what to do about several laboratories
 Laboratory read_laboratory(const std::string& path, const std::string& remedy = give_one_droplet);
-/// One line on how the terminal speed was scaled; empty if it was measured.
+/// One line on how the terminal speed was scaled; empty if the speed was measured.
 std::string law_of_speed(const Laboratory& lab);
 /// @param source  name of the text in messages
 Laboratory parse_laboratory(const std::string& text, const std::string& source,

@@ -28,7 +28,7 @@ struct Scales {
 };
 Scales scales_of(const Laboratory& lab);
 
-/// Gamma as droplet_texts() gives it to runs; empty if unknown.
+/// Text of the Gamma that droplet_texts() gives to runs; empty if Gamma is unknown.
 std::string line_tension_text(const Scales& scales);
 /// The text of each key, by the key's name.
 using Texts = std::map<std::string, std::string>;
@@ -38,10 +38,11 @@ using Texts = std::map<std::string, std::string>;
 Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model);
 /// A key's text with its numbers in the model's units: `0.2mm,0.3mm` is `0.1,0.15` with a droplet of 2 mm.
 /// @param text  numbers without a unit, and those in sigma, keep their values
-/// @throws Error that names the key, if one of its numbers has another unit than the key can have
+/// @throws Error that names the key, if one of its numbers has a unit that does not suit the key
 std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales);
-/// A list of lengths with its numbers in droplet diameters. @param diameter  of the droplet; NaN: unknown [m]
-/// @throws Error without a name of the list
+/// Converts the lengths of a list to droplet diameters. @param diameter  diameter of the droplet; NaN:
+/// unknown [m]
+/// @throws Error whose text does not name the list
 std::string in_diameters(const std::string& text, double diameter);
 
 /// The sag: the distance by which the centroid of a droplet sinks on a flat wall that it does not wet
@@ -50,11 +51,11 @@ std::string in_diameters(const std::string& text, double diameter);
 double sag_on_wall(double line_tension);
 /// Gamma of the droplet with this sag; NaN if there is none.
 double line_tension_of_sag(double sag);
-/// E_w = pi/(16 sag), of the soft disk with this sag.
+/// E_w = pi/(16 sag) of the soft disk with this sag.
 double wall_stiffness_of_sag(double sag);
 
-/// Gamma of the laboratory's droplet between upright plates. There gravity along the plates is strongest, so
-/// Gamma is smallest. NaN if the interfacial tension is unknown.
+/// Gamma of the laboratory's droplet between upright plates. In this position gravity along the plates is
+/// strongest, so Gamma is smallest. NaN if the interfacial tension is unknown.
 double line_tension_upright(const Laboratory& lab);
 /// Tilt at which a droplet of the laboratory has this Gamma [rad]; NaN if none does.
 double tilt_of(double line_tension, const Laboratory& lab);

@@ -13,7 +13,7 @@ class Activity {
   explicit Activity(int num_ranks) : num_ranks_(num_ranks) {}
 
   /// Call these when a rank begins or ends a task.
-  /// @param now  time since the session began, never less than before [s]
+  /// @param now  time since the session began; must not decrease from call to call [s]
   void started(double now);
   void ended(double now);
   /// Call this when a task starts at its release because its snapshot cannot be used.
@@ -33,13 +33,13 @@ class Activity {
   double last_ = 0;
   double last_start_ = 0;
   double busy_seconds_ = 0;
-  double tail_busy_seconds_ = 0;  // since the last start
+  double tail_busy_seconds_ = 0;  // busy time since the last start of a task [s]
 
   void count_until(double now);
   void lengthen();
 };
 
-/// Adds a session's line to the lines of earlier sessions; only those of the latest sessions are kept.
+/// Adds a session's line to the lines of earlier sessions, and drops the oldest lines if there are too many.
 std::string with_session(const std::string& lines, const std::string& line);
 
 }  // namespace clog::results

@@ -11,7 +11,7 @@ struct RunCost {
   double begin_seconds = 0;  ///< time for sampling the obstacles and releasing the droplet
   double seconds = 0;        ///< time since the release
   double work = 0;           ///< work done in these seconds
-  double longest_work = 0;   ///< the work if the run lasts to max-time
+  double longest_work = 0;   ///< total work of the run if it lasts to max-time
   bool is_over = false;
 };
 
@@ -22,7 +22,7 @@ struct WaitingRuns {
   double longest_work = 0;  ///< the work of each run if it lasts to max-time
 };
 
-/// Computing time of a whole sweep, or of the rest of it [s].
+/// Computing time of a whole sweep, or of its unfinished part [s].
 struct SweepCost {
   double seconds_per_work = 0;
   double bound = 0;  ///< the cost if every run lasts to max-time
@@ -34,24 +34,24 @@ struct SweepCost {
 
 /// Estimates the cost of a sweep from a sample of its runs. The sample is treated as random.
 ///
-/// The remaining time of unfinished runs is estimated from late ends only, because earlier ends say little
-/// about it. The end of a run is late if the run has lasted at least half as long as the shortest unfinished
-/// run. The lower limit assumes that late ends are exponentially distributed. The upper limit assumes that
-/// the ends come from a mixture of short and long runs, and become rarer with time. The estimate is the
-/// geometric mean of both limits.
+/// The remaining time of unfinished runs is estimated from late ends only, because early ends say little
+/// about the remaining time. The end of a run is late if the run has lasted at least half as long as the
+/// shortest unfinished run. The lower limit assumes that late ends are exponentially distributed. The upper
+/// limit assumes that the ends come from a mixture of short and long runs, and that ends become rarer with
+/// time. The estimate is the geometric mean of both limits.
 ///
 /// If no run of a parameter set has ended, the upper limit assumes that all its runs last to max-time. The
 /// estimate assumes that every order of magnitude of the remaining time is equally likely. The interval
-/// combines the error of each of these laws with the error of the sample.
+/// combines the uncertainty of these assumptions with the sampling error.
 /// @param sample  not empty; at least one run has done work and taken time
 /// @param all_work  work of all runs of the sweep, if every run lasts to max-time
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs);
 
 /// Estimates the remaining cost of a sweep from all its runs that have begun. These runs are not a random
 /// sample, because long runs start first. So each parameter set is estimated separately, by the method of
-/// sweep_cost(). The remaining time of a set's unfinished runs follows from the set's own runs if one of them
-/// has ended, otherwise from all runs. For a set without a started run, the estimate is the same fraction of
-/// its bound as for the other sets, and the error is as large as the estimate.
+/// sweep_cost(). The remaining time of a set's unfinished runs follows from the runs of this set if one of
+/// these has ended, otherwise from all runs. For a set without a started run, the ratio of estimate to bound
+/// is taken from the other sets, and the error is as large as the estimate.
 /// @param begun  not empty; at least one run has done work and taken time
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting);
 

@@ -7,7 +7,7 @@ namespace clog::results {
 
 struct Group;
 
-/// Doubts about a group's clogging length; doubt_texts explains each.
+/// Doubts about a group's clogging length; doubt_texts explains each of them.
 enum class Doubt {
   few_clogs,
   not_exponential,
@@ -70,7 +70,8 @@ inline constexpr DoubtText doubt_texts[] = {
      "cross themselves or obstacles (handbook, How far to trust it)"}};
 const DoubtText& text_of(Doubt doubt);
 /// These functions return the letters, the words with a space between them, and a legend. The legend is a
-/// blank line and a line for each different doubt, in the order of doubt_texts; it is empty without doubts.
+/// blank line, followed by a line for each kind of doubt that occurs, in the order of doubt_texts. It is
+/// empty without doubts.
 std::string letters_of(const std::vector<Doubt>& doubts);
 std::string words_of(const std::vector<Doubt>& doubts);
 std::string legend_of(const std::vector<Doubt>& doubts);

@@ -16,7 +16,7 @@ namespace clog::results {
 /// gets two lines.
 class Events {
  public:
-  /// @param path  of the file, for messages
+  /// @param path  path of the file, for messages
   explicit Events(std::string path) : path_(std::move(path)) {}
 
   /// Returns the events since the last call. The first call returns only the numbers of all runs and of
@@ -39,7 +39,7 @@ class Events {
   std::int64_t num_runs_ = 0;
   std::int64_t num_finished_ = 0;
   std::map<std::int64_t, Known> known_;
-  std::vector<std::string> columns_;  // columns that events name, see listed_columns()
+  std::vector<std::string> columns_;  // columns that appear in events, see listed_columns()
 
   bool count_runs(const store::SweepFile& file);
   std::vector<std::string> of_row(const sweep::RunRow& row) const;

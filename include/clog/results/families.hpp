@@ -14,11 +14,12 @@ namespace clog::results {
 inline constexpr double diameter_class = 0.05;
 inline constexpr std::size_t num_diameter_classes = 20;
 
-/// The droplets of some families, counted by relative diameter; per ancestor.
+/// Numbers of droplets in some families, by relative diameter, divided by the number of ancestors.
 struct Diameters {
   double number = 0;                ///< droplets per ancestor
-  fit::Interval number_interval{};  ///< at a line, from resampled ancestors; NaN for fewer than ten of them,
-                                    ///< if it is unknown, or if all have equal numbers
+  fit::Interval number_interval{};  ///< interval of `number` at a line, from resampled ancestors; NaN for
+                                    ///< fewer than ten ancestors, if the interval is unknown, or if all
+                                    ///< ancestors have equal numbers
   double area = 0;                  ///< area of these droplets, divided by the area of the ancestors
   double mean = 0;                  ///< mean diameter of the droplets; NaN without any
   /// Numbers and areas by class. Class i contains the diameters from i * diameter_class to (i + 1) *
@@ -29,23 +30,24 @@ struct Diameters {
 /// A family, and where its ancestor was released.
 struct ReleasedFamily {
   std::vector<Member> members;
-  double release = 0;  ///< x in a device, otherwise 0 [sigma]
+  double release = 0;  ///< x of the release in a device, otherwise 0 [sigma]
 };
 
 /// The fate at a line across the flow of the area of ancestors that were released before it. A droplet passes
 /// the line when it is beyond the line for the first time, and no droplet from which it descends has passed
 /// before.
 struct FamilyLine {
-  double distance;   ///< from the release, or x in a device [sigma]
+  double distance;   ///< distance of the line from the release; in a device, x of the line [sigma]
   Diameters passed;  ///< droplets that passed the line, with the diameters that they had then
-  /// Area that did not pass: of droplets that clogged before the line, of droplets before it that were too
-  /// small to be followed, and of droplets that were still moving or failed. The four areas add up to 1.
+  /// Area that did not pass, in three parts. `clogged`: droplets that clogged before the line. `small`:
+  /// droplets before the line that were too small to be followed. `not_known`: droplets that were still
+  /// moving or failed. These areas and the area that passed add up to 1.
   double clogged = 0, small = 0, not_known = 0;
   /// Share of the area that passes the line, by the product-limit estimator of Kaplan and Meier with areas as
   /// weights. The droplets in `small` and `not_known` count as censored where they were last seen. NaN if no
-  /// droplet was followed to the line, and not all have ended before it. The interval is from resampled
-  /// ancestors. With fewer than ten ancestors, or if all area passes or none, it is that of a binomial share,
-  /// as if each ancestor whose fate is known passed whole or not at all. NaN if it is unknown.
+  /// droplet was followed to the line, unless all droplets have ended before it. The interval is from
+  /// resampled ancestors. With fewer than ten ancestors, or if all area passes or none, it is that of a
+  /// binomial share in which each ancestor with a known fate is one trial. NaN if the interval is unknown.
   double passing = 0;
   fit::Interval interval{};
 };
@@ -58,8 +60,9 @@ struct Families {
   Diameters clogged;  ///< droplets that clogged
 };
 
-/// Statistics of families at lines of 10, 20, 50, 100, ... sigma, as far as any droplet went, and at more
-/// lines, except lines upstream of all releases. @throws std::invalid_argument unless 0 < confidence < 1
+/// Statistics of families at lines of 10, 20, 50, 100, ... sigma, up to the longest distance of a droplet,
+/// and at the given `more_lines`, except lines upstream of all releases. @throws std::invalid_argument unless
+/// 0 < confidence < 1
 Families families_of(std::span<const ReleasedFamily> families, double confidence,
                      std::span<const double> more_lines = {});
 

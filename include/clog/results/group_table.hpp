@@ -9,8 +9,8 @@
 
 namespace clog::results {
 
-/// Some parameters are equal in all groups. This selects those that are named above the table: all, or only
-/// parameters with an unusual value.
+/// Selects which parameters with equal values in all groups are named above the table: all, or only those
+/// with an unusual value.
 enum class SharedParameters { unusual, all };
 
 /// A printed table: one line per group, with the parameters in which groups differ. If groups have a
@@ -20,7 +20,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
 /// All fields of every group.
 std::string to_csv(const std::vector<Group>& groups);
 /// All fields of every group, its P(r), and the origin of the rows. @param provenance  of the sweep; @param
-/// mixture  of some of the groups; nullptr: none
+/// mixture  mixture of some of the groups; nullptr: none
 std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance,
                     const Mixture* mixture = nullptr);
 

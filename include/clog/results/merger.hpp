@@ -11,10 +11,10 @@
 
 namespace clog::results {
 
-/// Rows of several files as one sweep. A run that several files have is included once. The row to keep is
-/// chosen in this order: a result, a failure that every attempt would repeat, an unfinished row, a crash. Of
-/// two rows of the same kind, the one with more steps is kept. If results differ because of the instruction
-/// set, those of the first file are kept.
+/// Rows of several files as one sweep. A run that several files have is included once. Its row is chosen in
+/// this order of preference: a result, a failure that every attempt would repeat, an unfinished row, a crash.
+/// Of two rows of the same kind, the one with more steps is kept. If results differ because of the
+/// instruction set, the results of the first file are kept.
 struct MergedSweep {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< snapshots of unfinished runs
@@ -25,24 +25,24 @@ struct MergedSweep {
   std::set<std::string> differing_numerics;
 };
 
-/// Merges complete or stopped sweeps, for a new file.
+/// Merges complete or stopped sweeps; the result is for a new file.
 /// @param maker  provenance of the program that makes the new file, from cli::origin()
 /// @throws Error that names the files and the task, if two rows of a run contradict each other, if a file is
 /// damaged or being written, or if two files have different circles under the same name
 MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker);
 
-/// Reads the rows of several files together, also of running sweeps and of files with an unreadable config. A
-/// single file is returned unchanged.
+/// Reads the rows of several files together. The files may be of running sweeps, and may have an unreadable
+/// config. A single file is returned unchanged.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
-/// Changes the number of each task to its number in the settings of the runs, and the names of circles to
-/// those in the settings. Rows of runs outside these settings follow at the end. Returns the settings as a
+/// Changes the numbers of the tasks and the names of the circles in the table to those in
+/// RunList::settings(). Rows of runs outside these settings follow at the end. Returns the settings as a
 /// config.
 std::string number_tasks(const RunList& runs, store::SweepFile& table);
 
 /// Provenance of a file that contains rows of other files.
 /// @param maker  provenance of the program that makes the file, from cli::origin()
-/// @param config  of the new file
+/// @param config  config of the new file
 /// @param parts  a line for each part, see part_line()
 store::Provenance joint_provenance(const store::Provenance& maker, const std::string& config,
                                    const std::vector<const store::SweepFile*>& files,

@@ -8,8 +8,8 @@
 
 namespace clog::results {
 
-/// A mixture of droplets of several groups in given shares, such as droplets of several sizes. Distances are
-/// in mm if the groups have different laboratories, otherwise in sigma.
+/// A mixture of droplets from several groups in given shares, for instance of droplets of several sizes.
+/// Distances are in mm if the groups have different laboratories, otherwise in sigma.
 struct Mixture {
   struct Part {
     std::string value;  ///< value of `column` in the group, e.g. "2.8 mm"
@@ -33,14 +33,15 @@ struct Mixture {
 
 /// The clogging length and the survival curve of a mixture. The distance per run and the clogs per run of
 /// each group are weighted with its share. Intervals are percentiles of 2000 bootstrap resamples of seeds.
-/// Runs with the same seed stay together. For each set of groups, a resample has the same number of seeds as
-/// the sweep. So the result does not depend on whether groups share seeds.
+/// Runs with the same seed stay together. Seeds that occur in the same groups form a stratum, and each
+/// stratum has as many seeds in a resample as in the sweep. So the method works whether or not groups share
+/// seeds.
 /// @param text  a column and the weights of its values: `diameter=2.8mm:0.3,3.2mm:0.7`
 /// @param groups  from group_runs(), not empty
 /// @throws Error if the text has another form, or if not exactly one group has each of these values
 Mixture mix(const std::string& text, const std::vector<Group>& groups, double confidence);
 
-/// A line that says what is mixed, and the clogging length.
+/// One line with the parts of the mixture and its clogging length.
 std::string to_text(const Mixture& mixture, double confidence);
 
 }  // namespace clog::results

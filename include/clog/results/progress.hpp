@@ -17,8 +17,8 @@ namespace clog::results {
 
 /// The number of runs with an outcome, see outcome_of().
 std::int64_t count_in(const std::map<std::string, std::int64_t>& by_outcome, const std::string& outcome);
-/// The number of clogged droplets and the number of droplets at rest on a wall. Only numbers above 0 are
-/// named, but at least one number. @param by_outcome  see outcome_of()
+/// The number of clogged droplets and the number of droplets at rest on a wall. Numbers of 0 are omitted, but
+/// at least one number is given. @param by_outcome  see outcome_of()
 std::string text_of_clogs(const std::map<std::string, std::int64_t>& by_outcome);
 
 /// Reports the progress of a sweep on a StatusLine.
@@ -37,7 +37,7 @@ class Progress {
   void ended(const sweep::RunRow& row);
   /// An attempt failed; the task will be tried again.
   void tried(std::int64_t task) { running_.erase(task); }
-  /// Withdraws the report that a task has ended by a failure, because the task will run again.
+  /// Withdraws the report of a failed task, because the task will run again.
   void not_ended(const sweep::RunRow& failed);
   /// Prints a permanent line, on any screen.
   void say(const std::string& text) { status_.say(text); }

@@ -20,7 +20,7 @@ std::vector<std::string> differing_results(const sweep::RunRow& a, const sweep::
 /// @param row  see replayable_row()
 Repetition repeat(const sweep::RunRow& row);
 
-/// The member with this path of the row's family. @throws Error, with the paths of all daughters
+/// The member of the row's family that has this path. @throws Error that lists the paths of all daughters
 const Member& member_of(const sweep::RunRow& row, const std::string& path);
 /// The row's family, from its beginning.
 FamilyRun family_of(const sweep::RunRow& row);

@@ -18,21 +18,22 @@ class RunList {
  public:
   /// Adds all runs of a plan. @throws Error if another plan has other circles under the same name
   void add(const sweep::Plan& plan);
-  /// Adds runs that may be outside the plan, for instance runs of an earlier command of the sweep. Such a run
-  /// has the texts of the plan's first parameter set, except where its row has other values. Prints the
-  /// number of runs that these texts do not describe. @throws Error as add()
-  /// @param path  of the file that contains the rows
+  /// Adds runs that may be outside the plan, for instance runs of an earlier command of the sweep. A run
+  /// outside the plan gets the texts of the plan's first parameter set, except where its row has other
+  /// values. Prints the number of runs that these texts do not describe. @throws Error as add()
+  /// @param path  path of the file that contains the rows
   void add_rows(const std::string& path, const sweep::Plan& plan, const std::vector<sweep::RunRow>& rows);
 
-  /// Adds the seed of a run if its parameter set is known. Returns whether it is.
+  /// Adds the seed of a run if its parameter set is known. Returns whether the set is known.
   bool add_seed(const sweep::RunRow& row);
-  /// Adds the smallest unused seeds to every parameter set until it has `number` seeds. Sets without anything
-  /// random are not changed.
+  /// Adds the smallest unused seeds to every parameter set until it has `number` seeds. Parameter sets in
+  /// which nothing is random are not changed.
   void fill_seeds(std::size_t number);
 
   bool empty() const { return sets_.empty(); }
-  /// The settings of a sweep with exactly these runs. If the runs are the product of lists, the settings have
-  /// these lists, otherwise points. Values and points are in increasing order. The list must not be empty.
+  /// The settings of a sweep with exactly these runs. If the runs are the product of lists, the settings
+  /// contain these lists; otherwise they contain points. Values and points are in increasing order. The list
+  /// must not be empty.
   sweep::Settings settings() const;
 
  private:

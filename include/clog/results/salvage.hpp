@@ -16,8 +16,8 @@ struct Salvage {
   std::vector<std::string> damage;               ///< a sentence about each damaged part
 };
 
-/// Reads everything that is undamaged. Changes no file. @throws Error if the table is missing, not ours, or
-/// completely unreadable
+/// Reads everything that is undamaged. Changes no file. @throws Error if the table is missing, not written by
+/// clogsweep, or completely unreadable
 Salvage salvage(const std::string& path);
 /// Removes rows that are physically impossible, or that repeat the run of an earlier row. Returns a line for
 /// each removed row.

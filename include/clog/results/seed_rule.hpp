@@ -11,10 +11,11 @@
 
 namespace clog::results {
 
-/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough. When
-/// a round has ended, the number of clogs alone determines the next round. So the runs of a sweep depend
-/// neither on the ranks nor on interruptions. The estimate of lambda stays unbiased: stopping at a number of
-/// clogs is inverse sampling, in which the relative width of the interval depends only on this number.
+/// Adds seeds to a sweep, in rounds, until the clogging length of every parameter set is precise enough. The
+/// next round depends only on the numbers of clogs and seeds when a round has ended. So the choice of runs
+/// depends neither on the number of ranks nor on interruptions. The estimate of lambda stays unbiased:
+/// stopping at a number of clogs is inverse sampling, in which the relative width of the interval depends
+/// only on this number.
 class SeedRule {
  public:
   /// @param precision  required half-width of the 95 % interval divided by lambda
@@ -23,9 +24,9 @@ class SeedRule {
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
   /// Call this when all tasks so far are over. Returns the tasks of the next round; none at the end. Task s *
-  /// num_groups + g is the s-th seed of parameter set g. A set that is not precise enough gets as many
-  /// further seeds as its fraction of clogs so far requires, but at most as many as it already has. A set in
-  /// which all runs have failed gets no more.
+  /// num_groups + g is the s-th seed of parameter set g. For a set that is not precise enough, the number of
+  /// further seeds follows from the set's fraction of clogs so far, but it is at most the number of seeds
+  /// that the set already has. A set in which all runs have failed gets no more seeds.
   /// @param status  how a task ended
   std::vector<std::int64_t> next_round(const std::function<RunStatus(std::int64_t task)>& status);
 
@@ -53,7 +54,7 @@ class SeedRule {
 };
 
 /// The outcome in one line. It names the parameter sets that used all seeds before they reached the
-/// precision, and a remedy. If all sets reached the precision, it gives the number of sets.
+/// precision, and a remedy. If all sets reached the precision, the line contains the number of sets.
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
 
 /// A sweep that a rule may enlarge. Its settings have all seeds that the rule may use, beginning with the

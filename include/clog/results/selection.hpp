@@ -10,7 +10,7 @@
 
 namespace clog::results {
 
-/// End of a message about a column that does not exist.
+/// The end of a message about a column that does not exist.
 /// @param meant  the column that the user may mean, or empty
 std::string hint_at_column(const std::string& name, const std::string& meant);
 
@@ -24,7 +24,7 @@ class Condition {
   /// A row without a value in the column satisfies no condition.
   bool holds(const sweep::RunRow& row) const;
 
-  /// A misspelt word would select no row, or all rows with the relation !=, because it equals no row's value.
+  /// Without this check, a misspelt word would select no row, or all rows with the relation !=.
   /// @throws Error if no row has one of the words
   void require_known_words(std::span<const sweep::RunRow> rows) const;
 

@@ -35,9 +35,9 @@ struct Status {
   }
 };
 
-/// The status of a sweep from its file, which the sweep may still be writing. Runs in progress count as not
-/// clogged so far, at their present distance. Finished runs alone would give too short lengths, because runs
-/// that clog early finish first. @throws Error if the file lacks the description of its sweep
+/// The status of a sweep from its file, which the sweep may still be writing. Runs in progress are censored
+/// at their present distance. Finished runs alone would give too short lengths, because runs that clog early
+/// finish first. @throws Error if the file lacks the description of its sweep
 Status status_of(const std::string& path, const store::SweepFile& file, double confidence);
 
 /// The status as printed text.

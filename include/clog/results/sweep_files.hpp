@@ -28,14 +28,14 @@ class SweepFiles {
 
   /// The path without symbolic links, for messages and readers.
   const std::string& path() const { return place_.path(); }
-  /// What earlier sessions have left; empty if there were none.
+  /// The data of earlier sessions; empty if there were none.
   struct Earlier {
     store::SweepFile table;
-    std::vector<Entry> records;  ///< of the journal, the oldest first
+    std::vector<Entry> records;  ///< records of the journal, the oldest first
   };
-  /// Reads what earlier sessions have left, and keeps the provenance and the circles of the table.
-  /// @throws Error if the table is not a sweep's, or has foreign objects, or if there are records but no
-  /// table
+  /// Reads the data of earlier sessions, and keeps the provenance and the circles of the table.
+  /// @throws Error if the table is not of a sweep, or has foreign objects, or if the journal has records but
+  /// there is no table
   Earlier take_earlier();
   std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
   /// Publishes the table for the first time.
@@ -62,7 +62,8 @@ class SweepFiles {
   bool is_publishing() const { return publication_.valid(); }
   /// Publishes the table of an incomplete sweep, and reduces the journal to the unfinished runs.
   void stop();
-  /// Publishes the table of a complete sweep, and removes the journal. Returns a message if that fails.
+  /// Publishes the table of a complete sweep, and removes the journal. Returns a message if the removal
+  /// fails.
   std::string complete();
 
  private:
@@ -81,7 +82,8 @@ class SweepFiles {
   Clock::time_point begin_;
   bool is_published_ = false;
   Clock::time_point publication_begin_, publication_end_;
-  // Gives the stamp; this is the last member, so that it ends first.
+  // Returns the stamp. This future is the last member: it is destroyed first, and then waits for the end of
+  // the publication.
   std::future<std::optional<std::string>> publication_;
 
   double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }

@@ -17,10 +17,10 @@ namespace clog::results {
 class SweepState {
  public:
   /// Reads the files, and checks that they belong to this sweep.
-  /// @param num_wanted  number of tasks, from the start of the plan, that are requested at first (rounds may
-  /// request more)
+  /// @param num_wanted  number of tasks at the start of the plan that are requested first (rounds may request
+  /// more)
   /// @param attempts  number of attempts for a crashing run, over all sessions
-  /// @throws Error if the file is not a sweep's, has another model version or other settings, or another
+  /// @throws Error if the file is not of a sweep, has another model version or other settings, or if another
   /// sweep is writing to it
   SweepState(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
              store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
@@ -33,7 +33,8 @@ class SweepState {
 
   /// Tasks that are requested, not over and to be computed.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
-  /// Number of tasks that get the results of tasks_left() in other laboratories.
+  /// Number of tasks that copy the result of one of tasks_left(), because they are the same run in another
+  /// laboratory.
   std::int64_t num_waiting() const;
   /// Number of tasks_left() that resume from a snapshot.
   std::int64_t num_resumed() const;
@@ -45,7 +46,7 @@ class SweepState {
   /// restart.
   std::int64_t num_unreadable() const { return files_.num_unreadable(); }
 
-  /// Names what could not be verified in the file that the sweep resumes from; empty if all was verified.
+  /// Names the parts of the earlier file that could not be verified; empty if everything was verified.
   const std::string& caution() const { return files_.caution(); }
 
   /// Starts to record in the table how many of `num_ranks` ranks are busy (Activity).
@@ -53,7 +54,7 @@ class SweepState {
   /// A rank has ended its task, whatever the outcome.
   void rank_is_free() { files_.rank_is_free(); }
   sweep::Start start(std::int64_t task, int rank);
-  /// A started task does not use its snapshot, but restarts.
+  /// Call this when a started task cannot use its snapshot and restarts from its release.
   void restarted(std::int64_t task);
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
@@ -63,11 +64,12 @@ class SweepState {
   /// Discards a failure, so that the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return runs_.tries_again(failed); }
-  /// Call this often. It starts to publish the table if that is due, or detects that a publication has ended.
-  /// It never waits for the disk.
+  /// Call this often. It starts to publish the table if a publication is due, or detects that a publication
+  /// has ended. It never waits for the disk.
   void tick() { files_.tick(); }
   bool is_publishing() const { return files_.is_publishing(); }
-  /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
+  /// Publishes the table, and removes the journal of a complete sweep. Returns a message if the removal
+  /// fails.
   std::string finish();
 
  private:
@@ -79,18 +81,20 @@ class SweepState {
   std::int64_t num_faulty_ = 0;
   std::vector<std::int64_t> tasks_left_;
   std::unordered_map<std::int64_t, std::vector<std::int64_t>>
-      waiting_;  // tasks, by their twins in tasks_left_
-  /// What is known of a task from earlier sessions or attempts.
+      waiting_;  // waiting tasks, by their twins in tasks_left_
+  /// Data on a task from earlier sessions or attempts.
   struct Past {
     double wall_seconds = 0, processor_seconds = 0;  // time spent on the task
-    std::string instruction_set;  // that of the snapshot from which the task resumes; empty if it restarts
+    std::string instruction_set;  // instruction set of the snapshot from which the task resumes; empty if the
+                                  // task restarts
     void take_costs(const sweep::RunRow& row) {
       wall_seconds = row.wall_seconds;
       processor_seconds = row.processor_seconds;
     }
   };
   std::unordered_map<std::int64_t, Past> past_;
-  SweepFiles files_;  // the last member: a publication that it ends may read the runs
+  SweepFiles files_;  // the last member: it is destroyed first, and then waits for a publication that may
+                      // read the runs
 
   sweep::RunRow new_row(std::int64_t task) const;
   void request(std::int64_t task);

@@ -50,7 +50,7 @@ class Communicator {
   /// Receives the message that probe() found.
   std::vector<std::byte> receive(const Envelope& envelope) const;
 
-  /// Ends all ranks at once. For errors after which the ranks could only wait for each other.
+  /// Ends all ranks at once. Call this after an error that would let the ranks wait for each other for ever.
   [[noreturn]] void abort(int exit_code) const;
 
  private:

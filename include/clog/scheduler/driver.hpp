@@ -24,7 +24,8 @@ struct DriverOptions {
 
 /// Rank 0 calls this for a sweep, while the other ranks call follow_sweep(). Connects the scheduler with the
 /// state of the sweep, the log and the progress line. Returns the exit code.
-/// @param rule  requests more of the plan's tasks when the requested tasks are over; nullptr: none
+/// @param rule  requests more of the plan's tasks when the requested tasks are over; nullptr: no further
+/// tasks
 int drive_sweep(const scheduler::Communicator& ranks, const DriverOptions& options, const sweep::Plan& plan,
                 const sweep::JobFactory& make_job, results::SweepState& state, results::SeedRule* rule);
 

@@ -13,8 +13,8 @@ namespace clog::scheduler {
 /// Jobs in a separate process, so that a crash ends only a task and not the sweep. The task is then `failed`,
 /// its message is the signal or exit code, and the next task gets a new process.
 ///
-/// A process serves one task after the other, and keeps its obstacle array, until it crashes. The rank does
-/// not fork the process itself. A helper forks it, and this helper was forked before MPI started. So no
+/// Such a process computes one task after the other, and keeps its obstacle array, until it crashes. The rank
+/// does not fork the process itself. A helper forks it, and this helper was forked before MPI started. So no
 /// computing process has MPI, its threads, its registered memory, or an open file of the sweep. The helper
 /// and the computing process end with the rank.
 ///
@@ -23,7 +23,7 @@ namespace clog::scheduler {
 /// itself. When memory runs out, the kernel kills the computing processes first.
 class IsolatedJobs {
  public:
-  /// Makes the jobs that a text, such as a config, describes. Called in the helper.
+  /// Makes the jobs that a text, such as a config, describes. The helper calls this function.
   using Describe = std::function<sweep::JobFactory(const std::string& description)>;
 
   /// Forks the helper. Call this before MPI_Init, while there are no threads. @throws Error if no process can
@@ -33,9 +33,9 @@ class IsolatedJobs {
   IsolatedJobs(const IsolatedJobs&) = delete;
   IsolatedJobs& operator=(const IsolatedJobs&) = delete;
 
-  /// Call this once. At most one job of the factory may exist at a time, and none may outlive this object.
+  /// Call this once. At most one job of the factory may exist at a time, and no job may outlive this object.
   /// @param make_job  makes the described jobs in this rank. While there is a helper, only the initial row of
-  /// such a job is used.
+  /// these jobs is used.
   sweep::JobFactory jobs(const std::string& description, sweep::JobFactory make_job);
 
  private:

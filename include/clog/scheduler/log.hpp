@@ -19,7 +19,7 @@ void announce(const std::string& output, const sweep::Plan& plan, const results:
 class Log {
  public:
   enum class Level {
-    quiet,   ///< only events that need action, such as a machine that is set aside
+    quiet,   ///< only events that a user should act on, such as a machine that is set aside
     normal,  ///< also failures and the reason for a stop
     verbose  ///< also every task that starts or ends
   };
@@ -30,7 +30,7 @@ class Log {
   Log(results::Progress& progress, Level level) : progress_(progress), level_(level) {}
 
   void started(const sweep::RunRow& row, From from);
-  /// @param row  its message says why the task cannot use its snapshot
+  /// @param row  row of the task; its message says why the task cannot use its snapshot
   void restarted(const sweep::RunRow& row);
   /// Call this when a task has ended, failed or not, or was interrupted.
   void ended(const sweep::RunRow& row);

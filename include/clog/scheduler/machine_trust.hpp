@@ -10,13 +10,14 @@
 
 namespace clog::scheduler {
 
-/// Decides whether a failed task or its machine is at fault. A machine is a host; if all ranks are on one
-/// host, a machine is a rank. A task's result does not depend on the machine, so other machines can test the
-/// task:
+/// Decides whether a failed task is at fault itself, or the machine that computed it. A machine is a host; if
+/// all ranks are on one host, a machine is a rank. A task's result does not depend on the machine, so other
+/// machines can test the task:
 ///
 /// - A failure counts against its machine until the machine succeeds with another task, or until the task
 ///   also fails on a trusted machine. A machine is trusted if it has succeeded and is not on hold.
-/// - Three failures that count put a machine on hold: it gets no more tasks until their cause is known.
+/// - Three failures that count put a machine on hold: it gets no more tasks until the cause of these failures
+///   is known.
 /// - If one of the three tasks then succeeds elsewhere, the machine is set aside for good.
 /// - The last machine of several cannot be compared with another, so three failures set it aside at once. A
 ///   machine that was alone from the beginning is never set aside.
@@ -36,14 +37,15 @@ class MachineTrust {
   /// Records that a task succeeded, or failed. Returns the machines that are suspect as a result.
   std::vector<Suspect> succeeded(std::int64_t task, int rank);
   std::optional<Suspect> failed(std::int64_t task, int rank, const std::string& message);
-  /// Call this when no machine can decide whether a machine or a task is at fault. Machines on hold get tasks
+  /// Call this when no machine is left that could test the failed tasks. Machines on hold then get tasks
   /// again.
   void end_holds();
 
   int num_in_service() const { return num_in_service_; }
   bool may_work(int rank) const { return may_work(machines_.at(name_of(rank))); }
   bool is_trusted(int rank) const { return is_trusted(machines_.at(name_of(rank))); }
-  /// Whether this rank may retry a failed task: only after all other machines have tried it.
+  /// Whether this rank may retry a failed task. The machine on which a task failed may retry it only after
+  /// all other machines have tried it.
   bool is_next_for(std::int64_t task, int rank) const { return is_next_for(task, name_of(rank)); }
 
  private:

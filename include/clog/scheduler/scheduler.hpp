@@ -28,24 +28,24 @@ struct SweepEvents {
   std::function<void(const Report&)> progressed = [](const Report&) {};
   /// Called at the end of each attempt of a started task; after a stop the status is `interrupted`.
   std::function<void(const Report&)> ended = [](const Report&) {};
-  /// Whether a task that ended as `failed` should be tried again.
+  /// Returns whether a task that ended as `failed` should be tried again.
   std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
   /// Called for a task that `failed` if this machine may be at fault (see MachineTrust). The attempt does not
-  /// count, and the task is tried once more whatever tries_again() returned.
+  /// count, and the task is tried once more, whatever tries_again() has returned.
   std::function<void(std::int64_t task, const std::string& machine)> failure_withdrawn =
       [](std::int64_t, const std::string&) {};
-  /// Called when a machine is set aside: it is at fault for its failures and gets no more tasks.
+  /// Called when a machine is set aside, because it is at fault for its failures. It gets no more tasks.
   std::function<void(const MachineTrust::Suspect&)> set_aside = [](const MachineTrust::Suspect&) {};
-  /// Called about every 0.1 s, but less often while rank 0 samples an array or releases a droplet, which
-  /// takes a second in large boxes.
+  /// Called about every 0.1 s, but less often while rank 0 samples an array or releases a droplet, which may
+  /// take a second in a large box.
   std::function<void()> idle = [] {};
-  /// Whether the sweep should stop now. Then running tasks end as interrupted, and no further tasks are
-  /// handed out.
+  /// Returns whether the sweep should stop now. If so, running tasks end as `interrupted`, and no further
+  /// tasks are handed out.
   std::function<bool()> stop_requested = [] { return false; };
 };
 
-/// Whether rank 0 computes. `automatic`: only with up to 16 ranks. With more ranks, the work of rank 0 gains
-/// little, and its slices delay the next task of every worker.
+/// Whether rank 0 computes. `automatic`: only with up to 16 ranks. With more ranks, rank 0 would contribute
+/// little, and while it computes, workers would wait for their next tasks.
 bool computes(int num_ranks, MasterComputes choice);
 
 /// Rank 0's state of a sweep's tasks and machines. It is kept for all rounds: machines that were set aside
@@ -66,10 +66,10 @@ enum class SweepEnd {
   no_machine_left,  ///< every machine was set aside
 };
 
-/// Works through all tasks of a round with all ranks; every rank must call this.
+/// Computes all tasks of a round on all ranks; every rank must call this.
 ///
-/// Rank 0 hands out one task at a time, because the lengths of tasks differ by a factor of a thousand, and
-/// gathers the rows. Rows do not depend on the order of the tasks. A task that failed is tried again on
+/// Rank 0 hands out one task at a time, because the run times of tasks differ by a factor of a thousand. It
+/// also gathers the rows. Rows do not depend on the order of the tasks. A task that failed is tried again on
 /// another machine, if there is one, before new tasks start. A machine on which all tasks fail is set aside:
 /// see MachineTrust. If rank 0 computes, it does so in slices between two polls for messages. No rank spins:
 /// an idle rank sleeps, with a backoff of up to a few milliseconds. A stopped task has two seconds to report

@@ -11,12 +11,12 @@
 
 namespace clog::scheduler {
 
-/// Chooses the next task: the one that is expected to run longest. So ranks do not idle at the end while a
-/// long task finishes.
+/// Chooses the next task: the task that is expected to run longest. Long tasks start first, so that ranks do
+/// not idle at the end while a long task finishes.
 ///
-/// The tasks of a group differ in their seed only, and are handed out in order. A group's expected run time
+/// The tasks of a group differ only in their seed, and are handed out in order. A group's expected run time
 /// is results::SetTimes::mean_seconds(). Tasks of a group without an ended task are expected to run longer
-/// than all others; of several such groups, the one with the fewest tasks handed out is next.
+/// than all others; if there are several such groups, the group with the fewest started tasks is next.
 class TaskOrder {
  public:
   using GroupOf = std::function<std::int64_t(std::int64_t task)>;
@@ -28,15 +28,15 @@ class TaskOrder {
 
   bool empty() const { return num_left_ == 0; }
   /// Hands out a task; there must be one. The cost is proportional to the number of running groups.
-  /// @param now  time since some moment, which must be the same in all calls [s]
+  /// @param now  time since a fixed moment, the same moment in all calls [s]
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
   /// Records that a task that had ended has started again.
   void begun_again(std::int64_t task, double now);
 
  private:
-  /// Priority of a group; the group with the smallest is next. It contains, in this order: minus the expected
-  /// run time, the number of tasks handed out, the number of the group.
+  /// Priority of a group; the group with the smallest value is next. It contains, in this order: minus the
+  /// expected run time, the number of tasks handed out, the number of the group.
   using Turn = std::tuple<double, std::int64_t, std::size_t>;
   struct Group {
     std::vector<std::int64_t> tasks;
@@ -45,7 +45,7 @@ class TaskOrder {
     std::int64_t num_ended = 0;
     double time_ended = 0;     // sum of the run times of the tasks that ended [s]
     double start_running = 0;  // sum of the starts of the tasks that run
-    Turn turn;                 // does not depend on the time while no task of the group runs
+    Turn turn;                 // constant in time while no task of the group runs
 
     bool is_waiting() const { return next < tasks.size(); }
   };

@@ -4,7 +4,7 @@
 
 namespace clog::single_run {
 
-/// Upper bound of the cost of runs, which assumes that none ends before max-time.
+/// Upper bound of the cost of runs. It assumes that no run ends before max-time.
 struct MostCost {
   double time = 0;  ///< [t0]
   double steps = 0;

@@ -21,7 +21,7 @@ class RecordedRun {
     std::int64_t samples = 1;
     std::int64_t polygons = 0;
   };
-  /// @param samples, polygons  intervals [t0]; no polygons are kept if their interval is missing
+  /// @param samples, polygons  intervals [t0]; if `polygons` is missing, no polygons are kept
   static Intervals every(double samples, std::optional<double> polygons, double time_step);
 
   RecordedRun(DropletRun run, Intervals intervals);
@@ -33,9 +33,9 @@ class RecordedRun {
   const DropletRun& run() const { return run_; }
   /// The run's result; its status is `interrupted` if a signal ended it.
   RunResult result() const;
-  /// A trajectory of samples, polygons and the obstacles near them, with a row that contains the results.
-  /// @param row  the columns of parameters, see sweep::describe()
-  /// @param origin  of the trajectory
+  /// A trajectory: samples, polygons, the obstacles near the polygons, and a row that contains the results.
+  /// @param row  a row with the columns of parameters, see sweep::describe()
+  /// @param origin  origin of the trajectory
   store::Trajectory trajectory(sweep::RunRow row, store::Provenance origin) const;
   /// Prints two lines about the run's end. Returns the exit code.
   int report() const;

@@ -15,8 +15,8 @@ namespace clog::store {
 
 /// Version of the file format; see docs/reference/files.md.
 inline constexpr const char* format_version = "11";
-/// Version of files that also have a table of droplets. Older programs must not read such a file without this
-/// table.
+/// Version of files that also have a table of droplets. The version differs, so that older programs refuse
+/// these files instead of ignoring the table.
 inline constexpr const char* format_version_with_droplets = "12";
 
 /// Names and texts of the attributes at the file's root, which describe the origin of the file's numbers.
@@ -31,8 +31,8 @@ void refuse_existing(const std::string& path);
 /// Call this before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
-/// User-supplied circles, and the name of their file; the name is empty if the sweep's last command does not
-/// name this file.
+/// User-supplied circles, and the name of the file of circles. The name is empty if the sweep's last command
+/// does not name the file.
 struct CircleFile {
   std::string name;
   OwnCircles circles;
@@ -49,17 +49,18 @@ struct SweepFile {
   Provenance provenance;
   std::vector<CircleFile> circles;  ///< the circles that the rows refer to
   Checked checked = Checked::everything;
-  /// Objects and attributes that other programs have added; a file that replaces this one lacks them.
+  /// Objects and attributes that other programs have added. A file that replaces this one will not contain
+  /// them.
   std::vector<std::string> foreign = {};
 };
 
-/// The rows that a new file gets. Each row is requested once, in the order of `i`, so the rows need not be in
-/// one array.
+/// The rows of a file to be written. The writer requests each row once, in the order of `i`, so the rows need
+/// not be in one array.
 struct Rows {
   std::size_t number;
   std::function<sweep::RunRow(std::size_t i)> row;
 
-  /// From given rows, which must outlive this object.
+  /// Rows in one array, which must outlive this object.
   static Rows of(std::span<const sweep::RunRow> rows) {
     return {rows.size(), [rows](std::size_t i) { return rows[i]; }};
   }
@@ -68,8 +69,8 @@ struct Rows {
 /// Writes a sweep's file in place of the file with this OutputPath::stamp(). At every moment the path names a
 /// complete table, either the old or the new one, so readers may read it at any time. When this function
 /// returns, the new table is on the disk. Returns the stamp of the written file, even if somebody has
-/// replaced the file since. Returns nullopt if a file with another stamp is there; this file stays. @throws
-/// Error if the file cannot be written; then the old file stays
+/// replaced the file since. Returns nullopt if a file with another stamp is at the path; that file stays.
+/// @throws Error if the file cannot be written; then the old file stays
 std::optional<std::string> publish_sweep(const OutputPath& place, const std::string& stamp, const Rows& rows,
                                          const Provenance& provenance,
                                          const std::vector<CircleFile>& circles);
@@ -78,14 +79,15 @@ inline std::optional<std::string> publish_sweep(const OutputPath& place, const s
   return publish_sweep(place, stamp, Rows::of(content.rows), content.provenance, content.circles);
 }
 
-/// Reads a file of format version 9 to 12. Missing columns get Parameter::before, or are unknown. @throws
-/// Error if the file is missing, damaged, not HDF5, not written by clogsweep, or of another format version
+/// Reads a file of format version 9 to 12. Missing columns get the value Parameter::before, or are unknown.
+/// @throws Error if the file is missing, damaged, not HDF5, not written by clogsweep, or of another format
+/// version
 SweepFile read_sweep(const std::string& path);
 /// If a file has no valid seal, tries to read it in a child process. A later read_sweep() of the same bytes
-/// then need not fork; a process that has called MPI_Init must not fork. Throws nothing, because read_sweep()
-/// throws the error.
+/// then need not fork. This matters because a process that has called MPI_Init must not fork. Throws nothing:
+/// read_sweep() will report any error.
 void try_before_mpi(const std::string& path);
-/// A warning for readers of this file; empty if all of it was verified.
+/// A warning for readers of this file; empty if the whole file was verified.
 std::string caution(const std::string& path, const SweepFile& file);
 
 /// Call this before the file is replaced. @throws Error if it has foreign objects, which would be lost

@@ -28,11 +28,11 @@ struct Trajectory {
   std::vector<PolygonFrame> polygons;     ///< polygons, all of the same size; may be empty
   std::vector<Obstacle> obstacles;  ///< obstacles near the path, in the polygons' coordinates; may be empty
   std::vector<Wedge> wedges;        ///< wedges near the path, in the same coordinates; may be empty
-  sweep::RunRow row;                ///< what a sweep would have stored for this run
+  sweep::RunRow row;                ///< the row that a sweep would have stored for this run
   Provenance provenance;
 };
 
-/// Writes a new file. If this fails, there is no file. @throws Error if the file exists or cannot be written
+/// Writes a new file. A failure leaves no file behind. @throws Error if the file exists or cannot be written
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
 
 }  // namespace clog::store

@@ -45,7 +45,7 @@ struct Column {
   ValueKind kind;
   std::size_t size;  ///< bytes in a packed row; shorter text is filled up with zeros, longer text is cut
   const Parameter*
-      parameter;      ///< the parameter that the column holds; nullptr if there is none or more than one
+      parameter;      ///< the parameter in this column; nullptr if the column has no parameter or several
   bool shapes_array;  ///< see Parameter
   /// Runs to which the column applies; nullptr: all.
   const ParameterScope* scope = nullptr;
@@ -54,10 +54,12 @@ struct Column {
   std::function<void(RunRow&, const Value&)> set;
   /// Sets the value of a row whose file does not have this column.
   std::function<void(RunRow&)> set_unknown;
-  /// The value by which rows are compared, unset if it follows from other columns; null: see Parameter.
+  /// Returns the value by which rows are compared; the value is unset if it follows from other columns. If
+  /// null, Parameter::compared is used.
   std::function<Value(const RunRow&)> compared = nullptr;
-  /// The default for a row with its model and preset, unset if there is none; null: as in a run with defaults
-  /// for all other parameters. @throws Error if the row's parameters are impossible
+  /// Returns the default of the column for a row with this model and preset; the value is unset if there is
+  /// no default. If null, the default is that of a run with defaults for all other parameters. @throws Error
+  /// if the row's parameters are impossible
   std::function<Value(const RunRow&)> usual = nullptr;
 
   bool applies_to(const RunParameters& run) const { return !scope || scope->holds(run); }
@@ -81,10 +83,10 @@ struct Column {
 
 /// All columns, in their order in files.
 std::span<const Column> columns();
-/// Name of the column with the length of a dwell of Dwells::longest. The column whose name also has `_at` or
-/// `_from` at its end contains the place or the time at which this dwell began.
+/// Name of the column with the length of a dwell of Dwells::longest. With `_at` or `_from` appended, it is
+/// the name of the column with the place or the time at which this dwell began.
 std::string dwell_column(std::size_t place);
-/// @throws std::out_of_range if there is none
+/// @throws std::out_of_range if there is no column of this name
 const Column& column(std::string_view name);
 
 /// The value as text: a word as it is, a number by its shortest exact text; empty for unset.

@@ -11,16 +11,16 @@
 
 namespace clog::sweep {
 
-/// A task that is computed in slices, so that its process can handle messages in between.
+/// A task that is computed in slices. Between slices, its process can handle messages.
 class Job {
  public:
   virtual ~Job() = default;
   /// Works for some milliseconds. Returns whether the task is over. An error of the task ends the task with a
   /// row of status `failed`; advance() does not throw.
   virtual bool advance() = 0;
-  /// Whether row() and snapshot() have the task's present state. The call never waits. If another process
-  /// computes the job, the first call sends a request to this process and returns false. advance() receives
-  /// the answer; then one call returns true.
+  /// Returns whether row() and snapshot() have the task's present state. Never waits. If another process
+  /// computes the job, the first call sends a request to that process and returns false. advance() receives
+  /// the answer, and the next call of refresh() returns true.
   virtual bool refresh() { return true; }
   /// The task's row. Until the task is over, the row has the status `interrupted`. If the task could not use
   /// its snapshot and restarted, the message says why. If the task failed, the message gives only the reason

@@ -10,8 +10,8 @@
 
 namespace clog::sweep {
 
-/// One key of the config file, which is also an option of the programs: a parameter, or the preset, which
-/// sets several.
+/// One key of the config file, which is also an option of the programs. It is a parameter, or the preset,
+/// which sets several parameters.
 struct Key {
   std::string name;
   ValueKind kind;
@@ -23,9 +23,9 @@ struct Key {
   bool is_ensemble() const { return parameter && parameter->role == ParameterRole::ensemble; }
 
   /// Sets the key's parameter to a value. Does nothing for the preset, which acts through other keys. Does
-  /// nothing for obstacles either, because the values of this key only name files; Plan knows the content of
-  /// these files. @throws Error, without the key's name, if the value cannot be read or is out of the type's
-  /// range
+  /// nothing for the key `obstacles` either, because its values only name files; Plan knows the content of
+  /// these files. @throws Error whose text does not name the key, if the value cannot be read or is out of
+  /// the type's range
   void apply(RunParameters& run, const std::string& value) const;
 };
 
@@ -33,8 +33,8 @@ struct Key {
 const std::vector<Key>& keys();
 /// The key that lists the runs of a parameter set.
 const Key& seeds_key();
-/// Suggestions for a word that is no key: the key whose symbol in the paper is this word (Gamma, w_ob), or up
-/// to three names that contain the word, or the nearest name. Empty if there is none.
+/// Suggestions for a word that is not a key: the key whose symbol in the paper is this word (Gamma, w_ob), or
+/// up to three names that contain the word, or the nearest name. Empty if there are no suggestions.
 std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);

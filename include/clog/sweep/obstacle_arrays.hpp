@@ -9,7 +9,7 @@
 
 namespace clog::sweep {
 
-/// The values of all parameters that shape a run's walls, as text: runs with equal texts have the same walls.
+/// The values of all parameters that shape a run's walls, as text. Runs with equal texts have the same walls.
 std::string array_key(const RunParameters& run);
 
 /// The walls of a sweep's runs, usually obstacle arrays. The last array is kept, because a sweep requests the
@@ -26,15 +26,15 @@ class ObstacleArrays {
   /// Number of arrays that this process has built.
   int num_built() const { return num_built_; }
 
-  /// Longest time to wait until another process has built the array. It is at least ten times as long as
-  /// building the array takes, because processors may be shared and memory slow, and never less than 10 s.
+  /// Longest time to wait until another process has built the array. It is at least 10 s, and at least ten
+  /// times the usual time for building the array, because processors may be shared and memory may be slow.
   static std::chrono::duration<double> longest_wait(const ObstacleParameters& parameters);
 
  private:
   std::string key_;  ///< key of the array that is kept; empty if there is none
   std::shared_ptr<const ObstacleArray> array_;
   int num_built_ = 0;
-  bool is_waiting_worthwhile_ = true;  ///< false after such a wait, until a shared array is found
+  bool is_waiting_worthwhile_ = true;  ///< false after a wait that was in vain, until a shared array is found
 
   ObstacleArray build(const RunParameters& run);
   ObstacleArray find_or_build(const RunParameters& run);

@@ -17,16 +17,16 @@ namespace clog::sweep {
 /// Parameter set of a task, by its number.
 using GroupOf = std::function<std::int64_t(std::int64_t task)>;
 
-/// Describes the runs of a sweep, so that any task can be made in any order. A plan is a list of parameter
-/// sets, called groups; each group has its seeds. The parameter sets are the product of the settings' lists;
-/// with points, there is one such product for each point.
+/// Describes the runs of a sweep. Any task can be computed without the others, in any order. A plan is a list
+/// of parameter sets, called groups; each group has its seeds. The parameter sets are the product of the
+/// settings' lists; with points, there is one such product for each point.
 ///
 /// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array. If
 /// all groups have equally many seeds, task s * num_groups() + g is seed s of group g.
 class Plan {
  public:
   /// Checks every parameter set of the sweep.
-  /// @throws Error if one of them is impossible, or if the lists would repeat a run
+  /// @throws Error if a parameter set is impossible, or if the lists would repeat a run
   explicit Plan(const Settings& settings);
 
   std::int64_t size() const { return size_; }
@@ -45,8 +45,8 @@ class Plan {
   std::vector<std::string> texts(std::int64_t group) const;
   /// @param place  place of the task's seed among the seeds of the group, 0 <= place < num_seeds(group)
   std::int64_t task_of(std::int64_t group, std::int64_t place) const;
-  /// The first task with the same run in another laboratory. (Runs do not depend on the laboratory.) Empty if
-  /// this task is the first.
+  /// The first task that has the same run in another laboratory. (Runs do not depend on the laboratory.)
+  /// Empty if `task` itself is the first.
   std::optional<std::int64_t> twin(std::int64_t task) const;
   /// Whether each of the group's tasks has a twin.
   bool has_twin(std::int64_t group) const { return groups_[static_cast<std::size_t>(group)].twin >= 0; }
@@ -63,27 +63,27 @@ class Plan {
     const Key* key;
     std::vector<std::string> values;
   };
-  /// The lists of one branch of the settings that differ from those of the first branch, by their places in
-  /// axes_.
+  /// The lists of one branch of the settings that differ from the lists of the first branch. The key of the
+  /// map is the list's place in axes_.
   using OwnLists = std::map<std::size_t, std::vector<std::string>>;
   using Seeds = std::shared_ptr<const std::vector<std::uint32_t>>;
   struct Group {
     std::size_t product;
-    std::int64_t place;  ///< place in the product, seeds excepted
+    std::int64_t place;  ///< place in the product of all lists except the seeds
     Seeds seeds;
-    std::int64_t
-        runs;  ///< the first group that has the same parameters apart from the laboratory, without shards
-    std::int64_t twin = -1;  ///< group that contains the twins of this group's tasks; -1 if they have none
+    std::int64_t runs;  ///< the first group, before the division into shards, that has the same parameters
+                        ///< apart from the laboratory
+    std::int64_t twin = -1;  ///< group that contains the twins of this group's tasks; -1: no twins
   };
   /// Successive tasks that go through the same groups again and again, each time with the next seed.
   struct Layer {
     std::int64_t first_task;
-    std::int64_t first_seed;  ///< place among the seeds of a group
+    std::int64_t first_seed;  ///< place of the first seed among the seeds of a group
     std::vector<std::int64_t> groups;
   };
   class Builder;
 
-  std::vector<Axis> axes_;  // without the seeds; the first varies slowest
+  std::vector<Axis> axes_;  // all axes except the seeds; the first varies slowest
   std::vector<OwnLists> products_;
   std::vector<Group> groups_;
   std::vector<Layer> layers_;
@@ -95,7 +95,7 @@ class Plan {
   const Layer& layer_of(std::int64_t task) const;
   std::int64_t seed_place(std::int64_t task) const;
   std::vector<const std::string*> texts(std::size_t product, std::int64_t place) const;
-  /// Parameters before automatic values are known.
+  /// The parameters without their automatic values.
   RunParameters unresolved(std::size_t product, std::int64_t place, std::uint32_t seed) const;
   RunParameters parameters(std::size_t product, std::int64_t place, std::uint32_t seed) const;
 };

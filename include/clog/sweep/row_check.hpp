@@ -7,8 +7,8 @@
 namespace clog::sweep {
 
 /// Describes the first impossible value of a row: a parameter that no run can have, a number that is not
-/// finite, or a result that contradicts another result or physics. Empty if there is no such value. Unknown
-/// columns, as in files of older formats, are accepted.
+/// finite, or a result that contradicts another result or physics. Empty if all values are possible. Unknown
+/// values, which rows of older file formats have, are accepted.
 std::string fault_of(const RunRow& row);
 
 /// Largest possible distance from the release in the time of this row [sigma].

@@ -15,7 +15,7 @@ class RunJob final : public Job {
  public:
   /// @param run       resolved
   /// @param snapshot  a snapshot of the same task; if it cannot be used, the run restarts
-  /// @param arrays    from which the run's obstacles come
+  /// @param arrays    source of the run's obstacles
   RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> snapshot = {},
          std::shared_ptr<ObstacleArrays> arrays = std::make_shared<ObstacleArrays>());
 
@@ -29,7 +29,7 @@ class RunJob final : public Job {
   std::shared_ptr<ObstacleArrays> arrays_;
   std::unique_ptr<FamilyRun> run_;  // made at the first advance(), because the release may fail
   RunRow row_;
-  std::string why_restarted_;  // why the snapshot cannot be used; empty if it can
+  std::string why_restarted_;  // why the snapshot cannot be used; empty if it can be used
   double wall_seconds_ = 0, processor_seconds_ = 0;
   bool over_ = false;
 

@@ -20,13 +20,13 @@ namespace clog::sweep {
 inline constexpr const char* mixed_instruction_sets = "mixed";
 
 /// One row of the table of runs: parameters, results, circumstances. Its columns, their units and meanings
-/// are listed in columns.cpp. An unknown word is an empty optional, an unknown number is NaN, an unknown
-/// count is -1: optional ones would have two unknown values.
+/// are listed in columns.cpp. An unknown word is an empty optional, an unknown number is NaN, and an unknown
+/// count is -1. (Optional numbers would have two unknown values.)
 struct RunRow : RunResult {
   static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
   static constexpr std::int64_t not_counted = -1;
 
-  /// The results that files of older formats may lack are unknown.
+  /// Results that files of older formats may lack start as unknown.
   RunRow() {
     clogged_by.reset(), stability.reset(), failed_by.reset(), hold.mechanism.reset();
     sound_distance = not_known;
@@ -34,15 +34,15 @@ struct RunRow : RunResult {
     hold.geometry.num_wrapped = hold.geometry.num_gaps = hold.geometry.num_arcs = not_counted;
   }
 
-  /// The members of a family that has ended, with break-up=daughters. They are no columns, but lines of the
-  /// table of droplets.
+  /// The members of a family that has ended, with break-up=daughters. They are not columns of this table, but
+  /// lines of the table of droplets.
   std::vector<Member> family;
 
   std::int64_t task = -1;
 
   RunParameters parameters;                       ///< resolved parameters
   std::set<const Parameter*> unknown_parameters;  ///< parameters that the row's file does not have
-  double obstacle_density = 0;     ///< density, see Scene; for a saturated array, that of the jamming limit
+  double obstacle_density = 0;     ///< density, see Scene; saturated arrays have that of the jamming limit
   std::string preset;              ///< the preset with this interface, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 
@@ -69,7 +69,8 @@ inline bool is_unfinished(RunStatus status) {
   return status == RunStatus::running || status == RunStatus::interrupted;
 }
 
-/// Whether another attempt may succeed: the run failed, but not because of its parameters and seed alone.
+/// Whether another attempt may succeed, because the run failed for reasons other than its parameters and
+/// seed.
 inline bool may_succeed_later(const RunRow& row) {
   return row.status == RunStatus::failed && row.failed_by != FailedBy::divergence &&
          row.failed_by != FailedBy::crossing;
@@ -91,19 +92,20 @@ inline double cost_seconds(const RunRow& row) {
   return is_known(row.processor_seconds) ? row.processor_seconds : row.wall_seconds;
 }
 
-/// The parameters and the seed of a run as bytes. They are equal for equal runs, whatever their task numbers
-/// are. Numbers count with twelve digits, so that a gap and the same gap given by a pitch are equal.
+/// The parameters and the seed of a run as bytes. These bytes are equal for equal runs, whatever the task
+/// numbers are. Numbers are rounded to twelve digits, so that a gap equals the same gap computed from a
+/// pitch.
 std::string identity(const RunRow& row);
-/// The same without the laboratory, on which runs do not depend.
+/// identity() without the laboratory, on which runs do not depend.
 std::string identity_in_any_laboratory(RunRow row);
-/// The same without the model version, to find the task of a row that another version wrote.
+/// identity() without the model version, to find the task of a row that another version wrote.
 std::string identity_in_any_version(RunRow row);
 
 /// The columns of parameters. @param run  resolved
 RunRow describe(const RunParameters& run);
 /// Fills the columns of results.
 inline void record(const RunResult& result, RunRow& row) { static_cast<RunResult&>(row) = result; }
-/// The row of a run that has just begun: its results are those of RunResult{}, which are all known.
+/// The row of a run that has just begun. Its results are those of RunResult{}, so none of them is unknown.
 /// @param run  resolved
 RunRow begun_row(const RunParameters& run, std::int64_t task);
 

@@ -17,8 +17,8 @@
 namespace clog::sweep {
 
 /// Escapes a value for a line of a config. Characters that would end or cut the line (control characters, #,
-/// a backslash, blanks at the ends) become a backslash, x and two digits. unescaped() restores the value for
-/// any bytes.
+/// a backslash, blanks at the ends) become a backslash, x and two digits. unescaped() restores the value,
+/// whatever bytes it contains.
 std::string escaped(const std::string& text);
 /// The inverse of escaped(). Any other backslash stays a backslash.
 std::string unescaped(const std::string& text);
@@ -30,12 +30,12 @@ inline constexpr const char* circles_key = "obstacles";
 /// Whether a config explains its keys.
 enum class Comments { none, help };
 
-/// The settings of a sweep: given texts for some keys, and texts for all other keys, which follow from the
-/// given texts or are defaults. The parameter sets are the product of all lists. With points, each point
-/// gives the product of the lists of the keys that it does not set.
+/// The settings of a sweep: a text for every key. The user gives some texts; the other texts follow from
+/// these or are defaults. The parameter sets are the product of all lists. With points, there is one such
+/// product for each point, over the lists of the keys that the point does not set.
 class Settings {
  public:
-  /// Reads the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
+  /// Reads the text that to_config() wrote. @throws Error as set(), or if a line is not a line of a config
   static Settings from_config(const std::string& text);
 
   /// @throws Error if there is no such key or its list cannot be read
@@ -47,10 +47,10 @@ class Settings {
   const std::string& text(const std::string& name) const { return entry(name).text; }
   /// The expanded values of a key. The reference is valid until the key's text changes.
   const std::vector<std::string>& values(const std::string& name) const { return entry(name).values; }
-  /// The scene of all runs; nullptr if they have several.
+  /// The scene of all runs; nullptr if the runs have several scenes.
   const Scene* scene() const;
 
-  /// @throws Error that names the point, if it has an unknown key or a text that cannot be read
+  /// @throws Error that names the point, if the point has an unknown key or a text that cannot be read
   void set_points(const Points& points);
   const Points& points() const { return points_; }
   void set_shard(Shard shard) { shard_ = shard; }
@@ -58,8 +58,8 @@ class Settings {
 
   /// Calls `visit` for each branch of the settings. There is a branch for each combination of a point and
   /// values of the keys of kind `word`. The settings of a branch have no points and one value for each of
-  /// these keys. So the branch's runs are the product of the other lists.
-  /// @param point  place of the branch's point; -1 without points
+  /// these keys. So the branch's runs are the product of the lists of all other keys.
+  /// @param point  place of the branch's point among the points; -1 without points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
   /// All values() that each key has in any of the branches.
@@ -67,17 +67,17 @@ class Settings {
 
   /// A line of a config: a key with its text, or one of the lines `point-keys`, `point`, `shard`.
   void set_line(const std::string& name, const std::string& text);
-  /// Whether this is the name of such a line and not a key.
+  /// Whether this is the name of a line that is not a key: `point-keys`, `point` or `shard`.
   static bool is_plan_line(const std::string& name);
 
   /// The circles in the files that the key obstacles names. The caller that sets the key reads them.
   const CircleFiles& circle_files() const { return circle_files_; }
   void attach(const std::string& file, OwnCircles circles) { circle_files_.insert_or_assign(file, circles); }
   void detach(const std::string& file) { circle_files_.erase(file); }
-  /// Files that are named but not attached.
+  /// Files that the key obstacles names, but whose circles have not been attached.
   std::vector<std::string> missing_files() const;
 
-  /// All settings, including circles, as text for other ranks; and the inverse. @throws Error
+  /// All settings, including circles, as text for other ranks, and the inverse function. @throws Error
   std::string packed() const;
   static Settings from_packed(const std::string& text);
 
@@ -106,7 +106,7 @@ class Settings {
 };
 
 /// Refuses keys that have no effect because of another key or of the scene. check_each() refuses further
-/// ones.
+/// keys.
 /// @param settings  a branch, which has one value for each key of kind `word` @throws Error
 void refuse_contradictions(const Settings& settings);
 /// The setting because of which all seeds give the same run; empty if something is random.

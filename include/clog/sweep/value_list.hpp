@@ -15,7 +15,7 @@ namespace clog::sweep {
 /// `log(a,b,n)`, n values from a to b; for integers `1..50`; words as they are.
 /// Numbers come back in their shortest exact decimal form.
 /// @param words  words allowed instead of a number (e.g. auto), or all words allowed for kind word
-/// @throws Error, without the key's name, that says what is wrong with which item
+/// @throws Error that names the faulty item, but not the key
 std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
                                      const std::vector<std::string>& words);
 /// Splits a list like expand_list(), but values may repeat.
@@ -24,13 +24,13 @@ std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
 
 /// The items of a list without blanks around them: commas outside parentheses separate them.
 std::vector<std::string_view> split_list(std::string_view list);
-/// The numbers of a list as they are written, in order, perhaps with units. They are the items of the list;
-/// for lin(a,b,n) and log(a,b,n) they are a and b.
+/// The numbers in a list, as they are written, perhaps with units. The numbers are the items of the list; an
+/// item lin(a,b,n) or log(a,b,n) contributes a and b.
 std::vector<std::string_view> numbers_in(std::string_view list);
 
 using clog::shortest;
 
-/// The error for a text in which something like a unit follows a number.
+/// The error for a text in which a number is followed by a word that looks like a unit.
 struct NumberWithUnit : Error {
   using Error::Error;
 };

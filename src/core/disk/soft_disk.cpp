@@ -18,8 +18,8 @@
 namespace clog {
 namespace {
 
-/// Up to a dozen obstacles of a saturated array overlap a soft disk at once. The bound on (omega dt)^2 of all
-/// these contacts together is that of all modes of the polygon together.
+/// Up to a dozen obstacles of a saturated array overlap a soft disk at once. For these contacts together, the
+/// bound on (omega dt)^2 is the bound for all modes of the polygon together.
 constexpr double most_contacts = 12;
 constexpr double max_omega_dt2 = 3.0;
 

@@ -54,8 +54,8 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
   return force;
 }
 
-/// Only a root, a division and a few sums depend on each other; the processor overlaps them with the other
-/// operations.
+/// Only a root, a division and a few sums form a chain of dependent operations; the processor overlaps this
+/// chain with the other operations.
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);
@@ -125,9 +125,9 @@ void SpDroplet::advance(int num_steps) {
   }
 }
 
-/// Velocity Verlet, M dv/dt = f - b v with the drag of the second half kick implicit:
-///   u = (1 - d) v + h f,  x += dt u,  v = (u + h f)/(1 + d),  h = dt/2M,  d = dt b/2M.
-/// The loop computes each displacement s = dt u from the one before: s' = keep s + gain f.
+/// Velocity Verlet, M dv/dt = f - b v with the drag of the second half kick implicit: u = (1 - d) v + h f,  x
+/// += dt u,  v = (u + h f)/(1 + d),  h = dt/2M,  d = dt b/2M. The loop computes each displacement s = dt u
+/// from the previous displacement: s' = keep s + gain f.
 void SpDroplet::integrate(int num_steps) {
   const double dt = run_.time_step.value();
   const double h = 0.5 * dt / units::droplet_mass;

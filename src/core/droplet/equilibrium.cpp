@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 constexpr int most_stiffnesses = 30;  // most searches compute two stiffnesses
-constexpr int most_steps = 50;        // number of steps with one stiffness; most searches need 15
+constexpr int most_steps = 50;        // most steps before the stiffness is recomputed; most searches need 15
 constexpr int most_rejections = 10;   // number of rejected steps in a row
 constexpr int most_halvings = 10;
 /// Step of the central differences [sigma]: much smaller than a contact's range, much larger than round-off.
@@ -33,7 +33,7 @@ constexpr double force_round_off = 1e-10;
 constexpr double force_tolerance = 1e-7;
 /// Largest Newton step that may remain at the equilibrium [sigma].
 constexpr double move_tolerance = 1e-7;
-/// Largest fraction of the remaining distance that an accepted step may leave.
+/// An accepted step leaves at most this fraction of the distance to the equilibrium.
 constexpr double most_left = 0.75;
 /// A correction keeps at least this fraction of the stiffness along a step. A contact that opens during the
 /// step may reduce this stiffness to nearly zero, and the next step would then be far too long.
@@ -52,20 +52,20 @@ bool is_definite(double bound, const MatrixXd& k) {
   return Eigen::LLT<MatrixXd>(shifted).info() == Eigen::Success;
 }
 
-/// Whether every displacement decays under drag, dx/dt = -Kx, faster than with stiffness `bound`. This is the
-/// case if K - bound is positive definite, which is cheap to test. If the forces have an energy, K is
-/// symmetric, and the condition is also necessary. Springs along the interface have no energy and make K
-/// slightly unsymmetric. A soft K may then be stable without being positive definite, so the eigenvalues of K
-/// decide.
+/// Whether every displacement decays under drag, dx/dt = -Kx, faster than with stiffness `bound`. It is
+/// sufficient that K - bound is positive definite, which is cheap to test. If the forces have an energy, K is
+/// symmetric, and the condition is also necessary. Springs along the interface have no energy, and make K
+/// slightly unsymmetric. Then K may be stable without being positive definite, so the function computes the
+/// eigenvalues of K.
 bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
   if (is_definite(bound, k)) return true;
   return !has_energy && Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
 }
 
-/// The stiffness K, minus the derivative of the force, in two parts. K_tt is the stiffness of the points
-/// along the interface. The Schur complement K_nn - K_nt K_tt^-1 K_tn is the stiffness of the shape while the
-/// points adapt along the interface. If the points could not adapt, the mesh would seem to hold a droplet
-/// that is free to drift aside.
+/// The stiffness K, minus the derivative of the force, in two parts. K_tt is the stiffness against
+/// displacements of the points along the interface. The Schur complement K_nn - K_nt K_tt^-1 K_tn is the
+/// stiffness of the shape while the points adapt along the interface. With points that cannot adapt, the mesh
+/// would seem to hold a droplet that can in fact drift aside.
 class Stiffness {
  public:
   explicit Stiffness(bool has_energy) : has_energy_(has_energy) {}
@@ -90,7 +90,7 @@ class Stiffness {
     return true;
   }
   /// Smallest stiffness of the shape. It is the slowest rate at which a displacement decays under drag. If
-  /// some displacement grows, it is minus the largest rate of growth.
+  /// some displacement grows, the result is minus the largest rate of growth.
   double smallest() const {
     assert(shape_.size() > 0);
     if (has_energy_)
@@ -98,7 +98,7 @@ class Stiffness {
           .eigenvalues()[0];
     return Eigen::EigenSolver<MatrixXd>(shape_, false).eigenvalues().real().minCoeff();
   }
-  /// The displacement that these forces would cause with this stiffness.
+  /// The displacement x with K x = force.
   VectorXd solve(const VectorXd& force) const {
     const Index n = normal_along_.rows(), t = normal_along_.cols();
     const VectorXd along = along_.solve(force.tail(t));
@@ -109,10 +109,11 @@ class Stiffness {
     return move;
   }
 
-  /// Changes K by a matrix of rank one. After this, solve() maps the change of force along `step` to `step`,
-  /// as far as least_part allows. A contact changes K by rank one, too, so a few corrections are enough. C.
-  /// G. Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein, Math. Comp. 30, 523 (1976).
-  /// @param found  the displacement that solve() gives for this change of force before the correction
+  /// Changes K by a matrix of rank one, so that solve() maps the change of force along `step` to `step`,
+  /// within the limit least_part. A contact also changes K by a matrix of rank one, so a few corrections are
+  /// enough. C. G. Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein, Math. Comp. 30,
+  /// 523 (1976).
+  /// @param found  the displacement that solve() gave for this change of force before the correction
   void add_correction(const VectorXd& step, const VectorXd& found) {
     const double part_kept = step.dot(found) / step.squaredNorm();
     const double share = part_kept < least_part ? (1 - least_part) / (1 - part_kept) : 1;
@@ -137,7 +138,7 @@ class Stiffness {
   Eigen::PartialPivLU<MatrixXd> along_, shape_factor_;
 };
 
-/// Forces and stiffness of states near a given one, along the axes of the given state.
+/// Forces and stiffness at states near a given state, along the axes of the given state.
 class ForceField {
  public:
   ForceField(const EquilibriumForces& forces, DropletState state)
@@ -193,14 +194,14 @@ class ForceField {
   }
 };
 
-/// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
-/// stiffness (P. Deuflhard's natural monotonicity test). A test of the forces would reject nearly every step,
-/// because contacts that open or close dominate the forces. Computing a stiffness costs as much as 80 steps,
-/// so each step, accepted or not, corrects the stiffness for the next step. The stiffness is recomputed where
-/// corrections do not help, and once more at the end, within difference_step of the equilibrium. Steps with
-/// corrections may fail, or reach a place where some displacement meets no resistance. The search then
-/// returns to the place of the last computed stiffness, and continues from there with halved steps and
-/// without corrections.
+/// Newton's method. A step is accepted if the next Newton step, computed with the same stiffness, is shorter
+/// (P. Deuflhard's natural monotonicity test). A test of the forces would reject nearly every step, because
+/// contacts that open or close dominate the forces. Computing a stiffness costs as much as 80 steps.
+/// Therefore each step, accepted or not, only corrects the stiffness for the next step. The search recomputes
+/// the stiffness if corrections do not help, and once more at the end, within difference_step of the
+/// equilibrium. Steps with corrections may fail, or reach a place where some displacement meets no
+/// resistance. The search then returns to the place of the last computed stiffness, and continues from there
+/// with halved steps and without corrections.
 class Search {
  public:
   Search(const EquilibriumForces& forces, const DropletState& initial)
@@ -258,15 +259,15 @@ class Search {
     return longest() < move_tolerance && force_.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight_;
   }
 
-  /// Whether the droplet is at rest, tested with the axes of its present shape.
+  /// Whether the droplet is at rest. The test uses the axes of its present shape.
   bool rests_along_own_axes() {
     find_axes_and_force();
     move_ = stiffness_.solve(force_);
     return rests();
   }
 
-  /// Moves by a part of the step, if the remaining distance is then at most the fraction `share` of the
-  /// present distance. Returns whether the droplet moved.
+  /// Moves by the fraction `part` of the step, if this leaves at most the fraction `share` of the distance to
+  /// the equilibrium. Returns whether the droplet moved.
   bool tries(double part, double share) {
     const VectorXd step = part * move_;
     const ArrayXd place = position_ + (axes_.directions * step).array();
@@ -284,9 +285,8 @@ class Search {
     return succeeds;
   }
 
-  /// Takes steps with the stiffness of the present position. Returns true on two conditions: the steps
-  /// reduced the distance to the equilibrium or ended at rest, and the droplet is still within farthest_rest
-  /// of the start.
+  /// Takes steps with the stiffness of the present position. Returns true if the steps reduced the distance
+  /// to the equilibrium or ended at rest, and the droplet is still within farthest_rest of the start.
   bool approach() {
     begun_at_ = position_;
     move_ = stiffness_.solve(force_);

@@ -3,8 +3,8 @@
 namespace clog {
 namespace {
 
-/// Fractions of the support that wrapped obstacles give. Up to the first fraction, the droplet does not count
-/// as wrapped. From the second fraction on, it counts as wrapped, and in between as hybrid.
+/// Fractions of the support that wrapped obstacles give. Up to squeezed_below, the droplet does not count as
+/// wrapped. From wrapped_above on, it counts as wrapped; in between, it counts as hybrid.
 constexpr double squeezed_below = 1.0 / 3;
 constexpr double wrapped_above = 2.0 / 3;
 

@@ -27,7 +27,7 @@ Eigen::Array2d climb(const ObstacleArray& obstacles, Eigen::Array2d place) {
       const double angle = direction * std::numbers::pi / 4;
       const Eigen::Array2d trial = place + step * Eigen::Array2d(portable::cos(angle), portable::sin(angle));
       const double trial_room = clearance(obstacles, trial[0], trial[1], enough);
-      if (trial_room > room + round_off) {  // along a wall, round-off would never let it stop
+      if (trial_room > room + round_off) {  // otherwise round-off might keep the loop going along a wall
         room = trial_room;
         place = trial;
         climbed = true;
@@ -45,7 +45,7 @@ Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
   const Period& period = obstacles.period();
   const Eigen::Array2d centre{period.along() / 2, period.across() / 2};
   Eigen::Array2d place = climb(obstacles, centre);
-  // Within a post, the search continues at places on circles about the centre.
+  // If the place is within a post, the search tries places on circles around the centre.
   constexpr double apart = 0.25;  // sigma
   for (int ring = 1; obstacles.is_within_post(place); ++ring) {
     if (ring * apart > std::max(period.along(), period.across()))

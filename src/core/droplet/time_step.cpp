@@ -16,7 +16,7 @@ double relaxation_time(const RunParameters& run) {
 
 double drag_time_step(const RunParameters& run) {
   const bool is_stronger_somewhere = run.drag.near_wall > 0 || run.drag.relative > 1;
-  // On walls the edges of an elastic interface get short. Longer steps would have to be split there.
+  // On walls the edges of an elastic interface get short, and longer steps would have to be split.
   const bool is_elastic = run.model == Model::dp && run.dp.perimeter_spring != PerimeterSpring::along;
   return (is_stronger_somewhere || is_elastic ? 0.1 : 0.2) * relaxation_time(run);
 }

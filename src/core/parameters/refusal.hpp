@@ -9,7 +9,7 @@
 
 namespace clog {
 
-/// Other keys with values that a text contains.
+/// Other keys whose values a text contains.
 using Named = std::initializer_list<const char*>;
 
 [[noreturn]] inline void refuse(const char* key, const std::string& value,
@@ -26,8 +26,8 @@ inline void require(bool holds, const char* key, double value, const char* reaso
                     Named named = {}) {
   if (!holds) refuse(key, value, reason_and_remedy, named);
 }
-/// @param reason_and_remedy  makes the text. It is called only for a refusal; formatting a text in every
-/// check would take most of the time for planning a large sweep.
+/// @param reason_and_remedy  makes the text. It is called only for a refusal, because formatting a text in
+/// every check would take most of the time for planning a large sweep.
 template <std::invocable Words>
 void require(bool holds, const char* key, double value, const Words& reason_and_remedy, Named named = {}) {
   if (!holds) refuse(key, value, reason_and_remedy(), named);

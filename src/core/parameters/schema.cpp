@@ -172,7 +172,8 @@ struct Outside<std::optional<LaboratoryText>> {
   }
 };
 
-/// Properties of a parameter, except its key, its member and what follows from the member's type.
+/// Properties of a parameter, except its key, its member, and the properties that follow from the member's
+/// type.
 struct Facts {
   const char* column;
   const char* symbol = "";
@@ -191,8 +192,8 @@ struct Facts {
   ParameterValue (*compared)(const RunParameters&) = nullptr;
 };
 
-/// @param Member  a function without state, from the parameters of a run (const or not) to a reference to the
-/// member
+/// @param Member  a function without state. It takes the parameters of a run (const or not) and returns a
+/// reference to the member
 template <class Member>
 Parameter entry(const char* key, Member, const Facts& facts) {
   using T = std::remove_cvref_t<decltype(Member{}(std::declval<RunParameters&>()))>;
@@ -223,8 +224,8 @@ Bound to(double value, const char* reason, const char* remedy) { return {value, 
 Bound above(double value, const char* reason, const char* remedy) { return {value, false, reason, remedy}; }
 Bound below(double value, const char* reason, const char* remedy) { return {value, false, reason, remedy}; }
 
-/// K_l/Gamma, to nine digits because the ratio has round-off, for springs whose automatic stiffness is
-/// proportional to Gamma; unset for other springs.
+/// K_l/Gamma for springs whose automatic stiffness is proportional to Gamma; unset for other springs. Rounded
+/// to nine digits, which removes the round-off of the ratio.
 ParameterValue ratio_to_line_tension(const RunParameters& run) {
   const DpParameters& dp = run.dp;
   if (dp.perimeter_spring != PerimeterSpring::rest || !dp.perimeter_stiffness || dp.line_tension <= 0)
@@ -640,7 +641,7 @@ std::vector<Parameter> interface_entries() {
   };
 }
 
-/// Contact with walls, and the forces along them.
+/// Contact with walls, and forces along walls.
 std::vector<Parameter> wall_entries() {
   return {
       entry("wall-contact", [](auto& run) -> auto& { return run.dp.wall_contact; },
@@ -745,7 +746,7 @@ std::vector<Parameter> self_contact_entries() {
   };
 }
 
-/// Parameters of a run's end and of its status.
+/// Parameters that determine how a run ends, and its status.
 std::vector<Parameter> verdict_entries() {
   return {
       entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },
@@ -809,7 +810,7 @@ std::vector<Parameter> verdict_entries() {
   };
 }
 
-/// The laboratory in whose units results are given, too.
+/// The laboratory; results are also given in its units.
 std::vector<Parameter> laboratory_entries() {
   return {entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
                 {.column = "laboratory",
@@ -861,7 +862,7 @@ void check_range(const Parameter& parameter, double number, const ParameterValue
     refuse(parameter, value, upper->reason, upper->remedy);
 }
 
-/// A share counts as the number that it represents.
+/// The number in a value; a share like `12.5%` is converted to a number.
 std::optional<double> number_of(const ParameterValue& value, ValueKind kind) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);

@@ -54,8 +54,8 @@ std::vector<Post> posts_of(std::span<const Obstacle> circles) {
   return posts;
 }
 
-/// Whether the droplet hangs over a post: the interface covers the post's upstream side at a distance of at
-/// most one radius, and reaches beyond the post on both sides.
+/// Whether the droplet hangs over a post. This is the case if the interface covers the post's upstream side
+/// at a distance of at most one radius, and extends beyond the post on both sides.
 bool hangs_over(const Polygon& polygon, const Post& post) {
   const Obstacle& upstream = post.most_upstream();
   bool covers = false;
@@ -133,7 +133,7 @@ class Contacts {
           std::min({distance(begin), distance(end), distance(nearest_on_segment(wall.centre(), begin, end))},
                    [](const WedgeDistance& a, const WedgeDistance& b) { return a.distance < b.distance; });
       const double overlap = range_ - nearest.distance;
-      // round-off in the normal of a wall along the flow; such a wall supports nothing
+      // round-off in the normal of a wall along the flow; a wall along the flow supports nothing
       constexpr double round_off = 1e-12;
       const double upstream = std::abs(nearest.normal[0]) < round_off ? 0 : nearest.normal[0];
       is_touched |= take(i, overlap, overlap * upstream, touched);

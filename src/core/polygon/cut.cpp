@@ -32,7 +32,7 @@ Vertex vertex(const MovingPolygon& polygon, Index i) {
   return {point(polygon.position, i), point(polygon.velocity, i)};
 }
 
-/// The vertex at a place between two vertices, 0 at the first, 1 at the second.
+/// A vertex between two vertices; `place` is 0 at the first vertex and 1 at the second.
 Vertex between(const Vertex& first, const Vertex& second, double place) {
   return {first.position + place * (second.position - first.position),
           first.velocity + place * (second.velocity - first.velocity)};
@@ -86,7 +86,7 @@ MovingPolygon with_vertices(const MovingPolygon& polygon, int num_vertices) {
   const Index n = polygon.position.size() / 2;
   const PolygonShape shape = polygon_shape(polygon.position);
   std::vector<Vertex> vertices;
-  double way = 0;  // along the contour to vertex i
+  double way = 0;  // distance along the contour to vertex i
   for (Index i = 0; i < n; ++i) {
     const Vertex from = vertex(polygon, i), to = vertex(polygon, (i + 1) % n);
     const double length = std::sqrt((to.position - from.position).square().sum());
@@ -97,7 +97,7 @@ MovingPolygon with_vertices(const MovingPolygon& polygon, int num_vertices) {
       vertices.push_back(between(from, to, next() / length));
     way += length;
   }
-  // The last vertex may be at the end of the contour by rounding.
+  // Because of rounding, the last vertex may be beyond the end of the contour.
   while (static_cast<int>(vertices.size()) < num_vertices) vertices.push_back(vertex(polygon, 0));
   MovingPolygon spread = polygon_of(vertices);
   const Array2d centroid = area_centroid(polygon.position);

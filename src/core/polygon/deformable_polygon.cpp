@@ -34,9 +34,9 @@ Eigen::ArrayXd free_polygon(const RunParameters& run) {
   const double spring =
       run.dp.perimeter_spring == PerimeterSpring::rest ? run.dp.perimeter_stiffness.value() * n : 0;
   const double rest_edge = units::regular_edge_length(n);
-  // K_a (a_0 - a) = T dP/da, with T the tension of an edge and dP/da = P/(2a). The correction is small, so
-  // the iteration converges at once. There is no such state if the area is not stiffer than the tension. The
-  // result is then half of a_0.
+  // The area a solves K_a (a_0 - a) = T dP/da, where T is the tension of an edge and dP/da = P/(2a). The
+  // difference a_0 - a is small, so the iteration converges at once. If the area is too soft for the tension,
+  // there is no solution, and the result is half of a_0.
   double area = units::rest_area;
   for (int i = 0; i < 50; ++i) {
     const double edge = units::regular_edge_length(n, area);
@@ -55,8 +55,8 @@ ContactReach contact_reach_of_polygon(const RunParameters& run) {
   return {.range = run.dp.contact_range.value(), .by_edges = run.dp.wall_contact == WallContact::edge};
 }
 
-/// Upper bound of the energy of a released interface. The bound is far from tight: among obstacles the
-/// interface is hardly twice as long as a circle.
+/// Upper bound of the energy of a released interface. The bound is far too large in practice, because among
+/// obstacles the interface is hardly twice as long as a circle.
 double energy_of_interface(const RunParameters& run) {
   constexpr double excess_perimeter = 20;  // [sigma]
   const double spring =
@@ -96,7 +96,7 @@ Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
   return axes;
 }  // NOLINT(clang-analyzer-unix.Malloc): the matrix owns this memory after the move
 
-/// @param forces  must outlive the result, like the run
+/// @param forces  must outlive the result, and so must the run
 EquilibriumForces forces_along_interface(const RunParameters& run, RestForces& forces) {
   const auto axes = [&run](const DropletState& at) { return axes_of_interface(run.dp, at); };
   return EquilibriumForces::of(forces, axes, run.dp.perimeter_spring != PerimeterSpring::along);
@@ -112,11 +112,11 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   if (!forces.has_anchors()) return rest;
   // Springs tie the droplet to walls. Their anchors stay fixed during a search. A wall that has yielded
   // exerts its largest force, wherever the droplet moves. The search is repeated, at most most_yields times,
-  // until every wall can bear the force that it has to exert.
+  // until every wall can exert the force that holds the droplet.
   constexpr int most_yields = 20;
   // If all walls can hold, the excess after this many yields is below the first excess
-  // (docs/notes/2026-11-25-searches-with-friction.md). Otherwise it stays far above the first excess, even
-  // after most_yields.
+  // (docs/notes/2026-11-25-searches-with-friction.md). If not, the excess stays far above the first excess,
+  // even after most_yields.
   constexpr int yields_until_excess_has_fallen = 12;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
   WallTouches touches(run, obstacles);
@@ -137,7 +137,7 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   return std::nullopt;
 }
 
-/// Unknown for an interface that crosses itself or may do so.
+/// The stability is unknown for an interface that crosses itself or may cross itself.
 Stability stability_of_polygon(const RunParameters& run, const ObstacleArray& obstacles,
                                const DropletState& state) {
   if (run.dp.self_contact == SelfContact::off || !state.crossings.empty()) return Stability::unknown;
@@ -146,7 +146,7 @@ Stability stability_of_polygon(const RunParameters& run, const ObstacleArray& ob
   return stability_of(forces_along_interface(run, rest_forces), state);
 }
 
-/// @param circles  those that carry the droplet
+/// @param circles  the circles that carry the droplet
 double friction_use(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state,
                     std::span<const Obstacle> circles) {
   DpForces forces(run, obstacles);

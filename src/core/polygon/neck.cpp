@@ -9,18 +9,18 @@ namespace clog {
 namespace {
 
 /// A part of the droplet is a lobe if a circle of equal area is at least this many times as wide as the neck.
-/// A chord of a circle cuts off at most half the area of a circle with this chord as diameter. This is too
-/// little for a lobe.
+/// So a circle has no neck: a chord cuts off at most half the area of the circle with this chord as its
+/// diameter.
 constexpr double lobe_width = 2;
-/// A lobe also has at least this fraction of the droplet's area. A smaller part is only a bead: retracting
-/// films end in beads of a thousandth of the area.
+/// A lobe also has at least this fraction of the droplet's area. Smaller parts do not count, because
+/// retracting films end in beads with a thousandth of the area.
 constexpr double lobe_share = 0.02;
 
-/// Largest cosine of an angle that counts as a right angle. Across a bridge with straight sides, all segments
-/// are equally long. Without this tolerance, round-off would decide which segment is the shortest.
+/// Largest cosine of an angle that counts as a right angle. All segments across a bridge with straight sides
+/// are equally long. Without this tolerance, round-off would decide which of these segments is the shortest.
 constexpr double round_off = 1e-9;
-/// Whether a value is at most the round-off. The value is the product of a cosine or sine and two lengths.
-/// The squares of the lengths are given, to avoid square roots.
+/// Whether `value` is at most its round-off. The value is the product of a cosine or sine and two lengths.
+/// The function takes the squared lengths, so that no root is needed.
 bool is_hardly_positive(double value, double squared_lengths) {
   return value <= 0 || value * value <= round_off * round_off * squared_lengths;
 }
@@ -65,7 +65,8 @@ class Outline {
   }
   Array2d normal_at_vertex(Eigen::Index i) const { return normal_of_edge(before(i)) + normal_of_edge(i); }
 
-  /// Area enclosed by the outline from vertex `from` to a point of edge `to`, and by the segment back.
+  /// Area enclosed by the outline from vertex `from` to a point of edge `to`, and by the segment from this
+  /// point back to the vertex.
   double area_behind(Eigen::Index from, Eigen::Index to, const Array2d& point) const {
     const double way = sectors_[to] - sectors_[from] + (to < from ? sectors_[n_] : 0);
     return way + 0.5 * (cross(vertex(to), point) + cross(point, vertex(from)));
@@ -94,7 +95,7 @@ class Outline {
 /// The point of an edge that is closest to another point.
 struct Foot {
   Eigen::Index edge;
-  double place;  ///< 0 at the edge's first vertex, 1 at its second
+  double place;  ///< place on the edge: 0 at its first vertex, 1 at its second
   Array2d point;
 };
 Foot foot_on(const Outline& outline, Eigen::Index edge, const Array2d& from) {
@@ -128,12 +129,12 @@ bool parts_are_lobes(const Outline& outline, Eigen::Index vertex, const Foot& fo
   return part >= least && outline.area() - part >= least;
 }
 
-/// The widest possible neck: it divides the droplet into two equal areas.
+/// Width of the widest possible neck, which divides the droplet into two equal areas.
 double widest_neck(const Outline& outline) {
   return std::sqrt(outline.area() / 2 / (std::numbers::pi / 4)) / lobe_width;
 }
 
-/// The edges from `first` to the one before `last`, and their bounding rectangle.
+/// The edges from `first` to `last` - 1, and their bounding rectangle.
 struct Run {
   Eigen::Index first, last;
   Array2d low, high;
@@ -142,8 +143,8 @@ struct Run {
     const Array2d away = (low - point).max(point - high).max(0);
     return dot(away, away);
   }
-  /// Whether the rectangle contains a point for which the segment from `point` to it makes no acute angle
-  /// with `edge`.
+  /// Whether the rectangle contains a place such that the segment from `point` to this place makes no acute
+  /// angle with `edge`.
   /// @param tolerance  round-off times the edge's length
   bool reaches_behind(const Array2d& point, const Array2d& edge, double tolerance) const {
     const double x = edge[0] > 0 ? low[0] : high[0];
@@ -167,8 +168,8 @@ std::vector<Run> runs_of_edges(const Outline& outline) {
   return runs;
 }
 
-/// Searches these edges for a neck from `vertex` that is thinner than `thinnest`, and replaces `thinnest` by
-/// it.
+/// Searches the edges of `run` for a neck that begins at `vertex` and is thinner than `thinnest`. If there is
+/// such a neck, stores it in `thinnest`.
 void look_for_neck(const Outline& outline, Eigen::Index vertex, const Run& run, Neck& thinnest) {
   const Array2d from = outline.vertex(vertex);
   for (Eigen::Index edge = run.first; edge < run.last; ++edge) {

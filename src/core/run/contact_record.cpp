@@ -13,7 +13,7 @@ constexpr double same_place = 1e-6;
 /// Additional distance up to which obstacles are listed, so that lists are seldom rebuilt [sigma].
 constexpr double skin = 0.25;
 
-/// Distance from a point to the segment between two others [sigma].
+/// Distance from a point to the segment from `begin` to `end` [sigma].
 double distance_to_edge(const Eigen::Array2d& point, const Eigen::Array2d& begin, const Eigen::Array2d& end) {
   const Eigen::Array2d edge = end - begin;
   const double length2 = edge.square().sum();
@@ -37,7 +37,7 @@ double distance_from(const Obstacle& circle, const DropletState& state, bool mee
                   distance_to_edge(centre, middle, vertex(nearest + 1)));
 }
 
-/// Distance of a wedge from the closest point that moves [sigma].
+/// Distance of a wedge from the closest of the droplet's moving points [sigma].
 double gap_to(const Wedge& wedge, const DropletState& state) {
   double gap = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < state.size(); ++i) {
@@ -79,7 +79,7 @@ void ContactRecord::look_around(const DropletState& state, const ObstacleArray& 
   lower_ = lower - skin;
   upper_ = upper + skin;
   near_.clear();
-  // The list also contains obstacles just out of reach. With them, the loop below detects which obstacles the
+  // The list also contains obstacles just out of reach, so that the loop below detects which obstacles the
   // droplet has left.
   obstacles.gather(
       {origin_[0], origin_[1], lower_[0], upper_[0], lower_[1], upper_[1], reach_.range + parting + 2 * skin},

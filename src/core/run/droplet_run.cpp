@@ -18,11 +18,12 @@
 namespace clog {
 namespace {
 
-/// A released droplet is at first as slow as a clogged one.
+/// A clog is possible only after this number of relaxation times, because a released droplet is at first as
+/// slow as a clogged droplet.
 constexpr double relaxation_times_before_a_clog = 10;
 
-/// E_k/E_t below which the program searches for an equilibrium. The droplet must also be so slow that,
-/// without forces, it would move at most the distance farthest_rest within the relaxation time.
+/// E_k/E_t below which the program searches for an equilibrium. The droplet must also be so slow that its
+/// speed times the relaxation time is at most farthest_rest.
 double first_search(const RunParameters& run) {
   constexpr double slow = 1e-4;
   // While walls with friction yield, a droplet may creep, get free and move on. No search predicts this
@@ -34,7 +35,8 @@ double first_search(const RunParameters& run) {
 }
 /// After a failed search, the next search waits until E_k/E_t has fallen by this factor.
 constexpr double fall_between_searches = 0.1;
-/// If E_k/E_t rises above this multiple of the limit for the first search, this limit applies again.
+/// If E_k/E_t rises above this multiple of the limit for the first search, the next search again waits for
+/// this limit.
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// The stability of a droplet that has stopped in an unstable balance is tested again when E_k/E_t has
@@ -42,8 +44,8 @@ constexpr double rise_of_a_moving_droplet = 10;
 constexpr double change_between_looks = 10;
 
 /// The run tests for crossings of the interface once in this number of steps. The tests take less than 1 % of
-/// the run's time. They miss no crossing, because parts of the interface that crossed stay crossed. The sound
-/// distance is that of the last of these tests.
+/// the run's time. They miss no crossing, because parts of the interface that have crossed stay crossed. The
+/// sound distance is the distance at the last test without a crossing.
 constexpr std::int64_t steps_per_crossing_check = std::int64_t{32} * DropletRun::steps_per_check;
 
 /// Change this whenever the content of a snapshot changes.
@@ -233,7 +235,7 @@ void DropletRun::check() {
   const PolygonShape shape = droplet_->shape();
   const bool has_diverged = !(energy_ratio < diverged_energy_ratio && shape.perimeter < burst_perimeter &&
                               std::abs(shape.area / units::rest_area - 1) < diverged_area_error);
-  if (has_diverged) {  // also if one of these three numbers is NaN
+  if (has_diverged) {  // true also if one of these three numbers is NaN
     message_ = fmt::format(
         "diverged at t={:.6g}: E_k/E_t={:.6g}, area={:.6g}, perimeter={:.6g}; try a smaller time-step or "
         "terminal-speed",
@@ -267,7 +269,7 @@ void DropletRun::check() {
   const bool has_ended = status_ != RunStatus::running;
   if (!has_ended && !was_crossed_ && steps_done_ % steps_per_crossing_check != 0) return;
   const bool is_crossed = has_crossed_itself();
-  // Self-contact pushes a vertex that has passed through an edge back. This takes a few steps.
+  // Self-contact pushes back a vertex that has passed through an edge, but this takes a few steps.
   const bool stays_crossed = is_crossed && (was_crossed_ || has_ended);
   was_crossed_ = is_crossed;
   if (stays_crossed) {
@@ -282,7 +284,7 @@ void DropletRun::check() {
   if (!is_crossed) sound_distance_ = last_displacement()[0];
 }
 
-/// Without self-contact, nothing prevents crossings. The run then continues as the equations say.
+/// Without self-contact, nothing prevents crossings, and the run ignores them.
 bool DropletRun::has_crossed_itself() const {
   const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
   return run_.dp.self_contact == SelfContact::on && num_self_crossings(last.state().position) > 0;
@@ -334,8 +336,8 @@ SteadyTravel DropletRun::steady(const Dwells& dwells) const {
 }
 
 Sag DropletRun::sag(const Droplet& droplet) const {
-  // Before gravity acted, the droplet was a circle around its centre. So the displacement of the centroid was
-  // zero.
+  // Before gravity acted, the droplet was a circle around its centre, so the centroid was at the place of
+  // release.
   const DropletState& state = droplet.state();
   const Eigen::ArrayXd before = model_of(run_).free_shape(run_);
   const double top = displacement_of({state.x().minCoeff(), 0})[0] - before.head(state.size()).minCoeff();

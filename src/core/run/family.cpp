@@ -23,7 +23,7 @@ namespace {
 /// Change this whenever the content of a family's snapshot changes.
 constexpr std::uint64_t family_kind = 0x636c6f6766000001;
 
-/// The end with the status's name.
+/// The end that has the same name as the status.
 MemberEnd end_of(RunStatus status) { return meant_by<MemberEnd>(name(status)).value_or(MemberEnd::failed); }
 
 void put(ByteWriter& bytes, const Member& member) {
@@ -78,7 +78,8 @@ RunParameters daughter_parameters(const RunParameters& ancestor, double diameter
                                   int num_vertices) {
   RunParameters run = ancestor;
   run.dp.vertices = num_vertices;
-  // A replayed run knows the stiffness of its springs from its row, but not the ratio from which it follows.
+  // The row of a replayed run contains the stiffness of its springs, but not the ratio from which the
+  // stiffness follows.
   if (run.dp.perimeter_spring == PerimeterSpring::rest && run.dp.line_tension > 0)
     run.dp.perimeter_stiffness_ratio = *run.dp.perimeter_stiffness / run.dp.line_tension;
   run.dp.line_tension = std::min(run.dp.line_tension / (diameter * diameter), nearly_rigid_tension);
@@ -154,7 +155,7 @@ bool FamilyRun::advance(int num_checks) {
 }
 
 /// Whether some work for the present daughter succeeds. An exception ends the daughter, but not its family.
-/// If memory runs out, the whole family fails, and may be run again.
+/// If memory runs out, the whole family fails; it may be run again.
 template <class Work>
 bool FamilyRun::succeeds(const Work& work) {
   try {
@@ -171,7 +172,7 @@ bool FamilyRun::succeeds(const Work& work) {
   }
 }
 
-/// The present member's displacement and time, as displacement and time of the family.
+/// Converts the present member's displacement and time to displacement and time of the family.
 FamilyPoint FamilyRun::point_of(const Eigen::Array2d& displacement, double time) const {
   const double d = present_.diameter;
   return {.distance = present_.birth.distance + d * displacement[0],

@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t batch_size = 5;
 constexpr std::size_t fewest_batches = 10;
 constexpr std::size_t fewest_for_error = 200;
-/// If the relative standard error of a mean is below this, the transient is over, because the remaining
-/// variation may be round-off.
+/// If the relative standard error of a mean is below this value, the transient counts as over, because the
+/// remaining variation may be round-off.
 constexpr double negligible_error = 1e-6;
 
 double mean_of(std::span<const double> values) {

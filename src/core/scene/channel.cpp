@@ -20,7 +20,7 @@ namespace clog {
 namespace {
 
 /// The largest h at which the free droplet is upstream of the channel and touches nothing [sigma]; infinite
-/// if it never touches anything.
+/// if the droplet never touches the channel.
 /// @param run  resolved
 double last_free_start(const RunParameters& run) {
   const ChannelParameters& channel = run.channel;

@@ -59,7 +59,7 @@ void find_period(RunParameters& run) {
 ObstacleArray lattice_walls(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
 
 /// All voids of a lattice are alike, so the seed only chooses the place within a void (see
-/// lattice_obstacles()). A droplet that touches nothing at the box's centre is released exactly there, in the
+/// lattice_obstacles()). A droplet that touches nothing at the box's centre is released at the centre, in the
 /// shape that it has without obstacles.
 DropletState release_in_lattice(const RunParameters& run, const ObstacleArray& obstacles) {
   const DropletModel& model = model_of(run);

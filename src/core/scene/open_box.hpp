@@ -7,7 +7,8 @@
 
 namespace clog {
 
-/// Channels and walls have no periodic images: the box only bounds their coordinates [sigma].
+/// Size of the box of channels and walls, which have no periodic images. The box only limits coordinates
+/// [sigma].
 inline constexpr double open_box = 256;
 inline Eigen::Array2d middle_of_open_box() { return {open_box / 2, open_box / 2}; }
 inline Eigen::Array2d period_of_open_box() { return {open_box, open_box}; }

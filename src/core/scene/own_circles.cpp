@@ -46,7 +46,8 @@ double smallest_circle(const RunParameters& run) {
   return 2 * smallest->radius;
 }
 
-/// The period. With side walls, empty space beside the box keeps the droplet away from images of the circles.
+/// The period of the array. With side walls, it includes an empty strip beside the box, which keeps the
+/// droplet away from images of the circles.
 Period period_of(const ObstacleParameters& obstacles) {
   Period period = obstacles.period();
   if (obstacles.side_walls == SideWalls::off) return period;
@@ -73,7 +74,7 @@ void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
                                                place_of(circle)));
 }
 
-/// The smallest gap between a wall and a post that does not touch it.
+/// The smallest gap between a wall and a post that does not touch the wall.
 struct GapAtWall {
   Obstacle circle;
   double gap = std::numeric_limits<double>::infinity();  ///< [sigma]
@@ -124,7 +125,8 @@ Examined examined(const ObstacleParameters& obstacles) {
   return found;
 }
 
-/// Refuses gaps between a wall and a post that the mesh does not resolve. A post may overlap a wall.
+/// Refuses gaps between a wall and a post that the mesh does not resolve. A post may overlap a wall; then
+/// there is no gap.
 void check_gaps_at_walls(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
   if (obstacles.side_walls == SideWalls::off) return;
@@ -224,7 +226,8 @@ void find_gap_and_density(RunParameters& run) {
   obstacles.density = posts_per_area(obstacles);
 }
 
-/// Two random numbers in [0, 1). The constant separates this stream of numbers from other streams.
+/// Two random numbers in [0, 1). The constant makes these numbers independent of other random numbers with
+/// the same seed.
 Eigen::Array2d drawn_from(std::uint32_t seed) {
   std::seed_seq sequence{seed, std::uint32_t{0x0bc1c1e5}};
   std::mt19937_64 engine(sequence);
@@ -311,7 +314,8 @@ double distance_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
   return run.obstacles.exit - start_of_path(run.obstacles, place_in_file(run, start)[0]);
 }
 
-/// The density. If the parameters lack it, as in a stored row, it is computed from the posts.
+/// The density of circles. If the parameters do not contain it, as in a stored row, it is computed from the
+/// posts.
 double circle_density(const ObstacleParameters& obstacles) {
   return obstacles.density.per_area ? *obstacles.density.per_area : posts_per_area(obstacles);
 }
@@ -326,7 +330,7 @@ double start_of_path(const ObstacleParameters& obstacles, double x) {
 bool is_displaced(const RunParameters& run, double x, double y) {
   if (run.obstacles.layout != ObstacleLayout::file || run.obstacles.release != Release::entrance)
     return false;
-  constexpr double tolerated = 0.01;  // of the release without obstacles nearby [sigma]
+  constexpr double tolerated = 0.01;  // tolerance for the place of a release without obstacles nearby [sigma]
   const Eigen::Array2d drawn = place_on_entrance(run);
   const double along = start_of_path(run.obstacles, x) - drawn[0];
   const double across = std::remainder(y - drawn[1], run.obstacles.period().across());

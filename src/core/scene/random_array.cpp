@@ -14,8 +14,8 @@ namespace clog {
 
 namespace {
 
-/// Converts a share of the saturated density to a density. Refuses densities that only some seeds reach:
-/// single runs of a sweep would fail.
+/// Converts a share of the saturated density to a density. Refuses densities that only some seeds reach,
+/// because single runs of a sweep would then fail.
 void find_density(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   const std::optional<double> density = wanted_density(obstacles);

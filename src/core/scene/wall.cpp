@@ -33,8 +33,8 @@ const Scene wall_scene = {.finding = Finding::sag,
                           .gap_key = nullptr,
                           .check = nothing_to_check,
                           .resolve = nothing_to_resolve,
-                          // With this value, automatic parameters are those of droplets among obstacles of
-                          // the usual size. Sags are compared with such droplets.
+                          // With this value, automatic parameters are those of a droplet among obstacles of
+                          // the usual size. So the sag applies to the droplets in an array.
                           .sharpest_bend = smallest_diameter,
                           .density = no_density,
                           .walls = flat_wall,

@@ -8,7 +8,7 @@
 namespace clog {
 namespace {
 
-/// The names of the option --instruction-set.
+/// The target's name in the option --instruction-set.
 std::string name_of(std::int64_t target) {
   if (target == HWY_AVX3) return "avx512";
   if (target == HWY_AVX2) return "avx2";
@@ -33,8 +33,8 @@ std::vector<std::string> instruction_sets() {
 }
 
 std::string instruction_set() {
-  // If targets are not set by name, Highway queries the processor each time. Under a hypervisor this takes
-  // longer than the rest of a task's description.
+  // Unless the targets are set, Highway queries the processor at every choice of a kernel. Under a hypervisor
+  // this takes longer than the rest of a task's description.
   [[maybe_unused]] static const bool is_asked_once = (allow_targets(hwy::SupportedTargets()), true);
   return name_of(hwy::SupportedAndGeneratedTargets().front());
 }

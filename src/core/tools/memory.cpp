@@ -8,7 +8,7 @@
 namespace clog {
 
 void require_memory(const std::string& purpose, std::size_t bytes) {
-  // Reserves addresses that are never touched. They count against limits, but use no memory.
+  // Reserves addresses, but never touches them. They count against limits without using memory.
   void* const trial =
       mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (trial == MAP_FAILED)

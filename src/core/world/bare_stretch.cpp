@@ -21,7 +21,7 @@ std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Ob
     shadows.push_back({circle.*centre - circle.radius, circle.*centre + circle.radius});
   std::sort(shadows.begin(), shadows.end(),
             [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
-  // A projection across the period's end may cover its beginning.
+  // A projection that extends across the end of the period may cover the beginning of the period.
   double covered = shadows.front().begin;
   for (const Stretch& shadow : shadows) covered = std::max(covered, shadow.end - period);
   std::vector<Stretch> bare;

@@ -9,11 +9,12 @@
 namespace clog {
 namespace {
 
-/// Surfaces keep the gap if discs of diameter + gap do not overlap. This sum is the `spacing`. So all numbers
-/// below follow from the smallest and the widest spacing, and from the area.
+/// Two surfaces are at least the gap apart if discs of diameter + gap do not overlap. The sum diameter + gap
+/// is called the spacing. All numbers below follow from the smallest and the widest spacing, and from
+/// the area of the array's period.
 struct Spacings {
   double smallest, widest;
-  double edge;  // edge of a square of the same area
+  double edge;  // edge of a square with the area of the period
 };
 
 Spacings spacings_of(const ObstacleParameters& obstacles) {
@@ -21,27 +22,29 @@ Spacings spacings_of(const ObstacleParameters& obstacles) {
           std::sqrt(obstacles.period().area())};
 }
 
-/// Mean density of saturated arrays. It was measured for widest/smallest from 1 to 5, in boxes of at least 10
-/// widest spacings; smaller boxes agree. The fit is up to 0.5 % below the measurements.
+/// Mean density of saturated arrays. It was measured for ratios widest/smallest from 1 to 5, in boxes of at
+/// least 10 widest spacings; smaller boxes have the same density. The fit is up to 0.5 % below the
+/// measurements.
 double mean_density(const Spacings& spacings) {
   const double x = portable::log(spacings.widest / spacings.smallest);
   return saturated_density(spacings.smallest, 0) / (1 + x * (0.59 + x * (0.1 - x * 0.032)));
 }
 
 /// Fluctuations of the density of saturated arrays. The standard deviation of the number of obstacles is
-/// proportional to the edge of a square box: 0.200 box/smallest for equal discs in boxes of 5 to 100
-/// spacings, 0.263 at widest/smallest = 2, 0.346 at 3, 0.43 at 5. Skewness and excess kurtosis are within 0.1
-/// of a Gaussian's. Of a million seeds (equal discs, box of 10 spacings) none is 5.5 deviations below the
-/// mean, so eight deviations exclude none of the 2^32 seeds.
+/// proportional to the edge of a square box: it is 0.200 box/smallest for equal discs in boxes of 5 to 100
+/// spacings. The factor is 0.263 at widest/smallest = 2, 0.346 at 3, and 0.43 at 5. Skewness and excess
+/// kurtosis are within 0.1 of a Gaussian's. Of a million seeds (equal discs, box of 10 spacings) none is 5.5
+/// deviations below the mean. So a limit eight deviations below the mean excludes none of the 2^32 seeds.
 double standard_deviation(const Spacings& spacings) {
   const double of_number = 0.205 + 0.075 * (spacings.widest / spacings.smallest - 1);
   return of_number / (spacings.smallest * spacings.edge);
 }
 
 /// A lower bound of the density of saturated arrays. If not even a disc of the smallest size fits, every
-/// place is within (smallest + widest)/2 of a disc's centre. Circles that cover a plane have together at
-/// least 2 pi/sqrt(27) times its area (Kershner, Am. J. Math. 61, 665 (1939)). The constant below is
-/// 2/sqrt(27), rounded down by more than the rounding errors of coordinates.
+/// place is within (smallest + widest)/2 of a disc's centre. So circles of this radius around the centres
+/// cover the plane. Their total area is then at least 2 pi/sqrt(27) times the area of the plane (Kershner,
+/// Am. J. Math. 61, 665 (1939)). The constant below is 2/sqrt(27), rounded down by more than the rounding
+/// errors of coordinates.
 double covering_density(const Spacings& spacings) {
   const double reach = (spacings.smallest + spacings.widest) / 2;
   return 0.3848 / (reach * reach);

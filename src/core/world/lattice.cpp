@@ -44,7 +44,7 @@ double multiple(double period, double longest) {
   return period * std::floor(longest * (1 + box_rounding) / period);
 }
 
-/// The lattice of this tilt with the largest allowed periods.
+/// The lattice that has the tilt of p and q, and the largest allowed periods.
 CommensurateLattice lattice(const ObstacleParameters& obstacles, int p, int q) {
   const double spacing = obstacles.spacing();
   if (obstacles.lattice == LatticeKind::square)
@@ -63,7 +63,7 @@ CommensurateLattice lattice(const ObstacleParameters& obstacles, int p, int q) {
           portable::atan2(q * tangent_unit(obstacles.lattice), p) / degree};
 }
 
-/// The square lattice that has exactly this angle and box, if there is one; it makes a search unnecessary.
+/// The square lattice that has exactly this angle and box, if there is one; a search is then unnecessary.
 std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstacles) {
   const double steps = obstacles.box / obstacles.spacing();
   const auto p = std::lround(steps * portable::cos(obstacles.lattice_angle * degree));
@@ -75,8 +75,8 @@ std::optional<CommensurateLattice> lattice_with(const ObstacleParameters& obstac
   return fits ? std::optional(fitting) : std::nullopt;
 }
 
-/// For each p, calls visit(lattice) for two lattices with allowed periods. They are those with the tilts
-/// nearest to lattice_angle, one below and one above it.
+/// For each p, calls visit(lattice) for two lattices with allowed periods: the lattice with the nearest tilt
+/// below lattice_angle, and the lattice with the nearest tilt above it.
 template <class Visit>
 void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
   const double spacing = obstacles.spacing();
@@ -97,8 +97,8 @@ void for_each_near(const ObstacleParameters& obstacles, Visit visit) {
   }
 }
 
-/// A lattice as integers, so that the points in its period are found exactly. The coordinates of point (i, j)
-/// are x = (x_of_i i + x_of_j j) length/end_x and y = (y_of_i i + y_of_j j) box/end_y.
+/// A lattice in integers, so that the points in its period are found without rounding errors. The coordinates
+/// of point (i, j) are x = (x_of_i i + x_of_j j) length/end_x and y = (y_of_i i + y_of_j j) box/end_y.
 struct IntegerLattice {
   long long p, q;  ///< the tangent of the tilt is q/p times tangent_unit()
   long long x_of_i, x_of_j, y_of_i, y_of_j, end_x, end_y;
@@ -174,13 +174,15 @@ struct CellPlace {
 };
 CellPlace free_place(const ObstacleParameters& parameters, const IntegerLattice& lattice,
                      std::uint32_t seed) {
-  std::seed_seq sequence{seed, std::uint32_t{0x1a771ce5}};  // the constant separates this stream from others
+  // The constant makes these numbers independent of other random numbers with the same seed.
+  std::seed_seq sequence{seed, std::uint32_t{0x1a771ce5}};
   std::mt19937_64 engine(sequence);
   boost::random::uniform_01<double> uniform;
   const double taken = (parameters.diameter / 2 + free_radius) / (parameters.diameter + parameters.gap);
   const double i_x = lattice.i_x, i_y = lattice.i_y, j_x = lattice.j_x, j_y = lattice.j_y;
-  // `widest` is the distance of the emptiest place from the three obstacles around it (square: 0.707). The
-  // factor 0.69 excludes free corners that are so small that random places almost never fall into them.
+  // `widest` is the distance of the middle of a void from the obstacles around it (0.707 spacings in a square
+  // lattice). The factor 0.69 excludes free corners so small that a random place would almost never fall into
+  // one.
   const double third = std::min(std::hypot(i_x - j_x, i_y - j_y), std::hypot(i_x + j_x, i_y + j_y));
   const double widest = std::hypot(i_x, i_y) * std::hypot(j_x, j_y) * third / (2 * (i_x * j_y - i_y * j_x));
   const bool has_free_places = taken < 0.69 * std::numbers::sqrt2 * widest;
@@ -208,8 +210,8 @@ std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obs
   if (const auto fitting = lattice_with(obstacles)) return fitting;
   std::optional<CommensurateLattice> nearest;
   const double angle = obstacles.lattice_angle;
-  // The box of square lattices grows with p. So of two candidates that are equally near, the later one has
-  // the larger box.
+  // The box of square lattices grows with p. So of two equally near candidates, the later candidate has the
+  // larger box.
   for_each_near(obstacles, [&](const CommensurateLattice& candidate) {
     if (!nearest || std::abs(candidate.angle - angle) <= std::abs(nearest->angle - angle) + same_angle)
       nearest = candidate;

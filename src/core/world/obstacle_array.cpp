@@ -50,13 +50,13 @@ CellAxis rows_of(const Period& period) {
 }
 
 /// Whether one of two circles has its centre within the other. Circles with the same centre do not count,
-/// because they are a mistake, or a circle and its own image.
+/// because they are either a mistake or a circle and its own image.
 bool share_a_post(double apart, double first_radius, double second_radius) {
   return apart > 0 && apart < std::max(first_radius, second_radius);
 }
 
-/// Number of times that a straight line crosses the positive x axis, upwards minus downwards. The sum over a
-/// closed path is the number of its turns about the origin.
+/// 1 if a straight line crosses the positive x axis upwards, -1 if it crosses the axis downwards, otherwise
+/// 0. The sum over a closed path is the number of the path's turns about the origin.
 int crossings_of_axis(const Eigen::Array2d& from, const Eigen::Array2d& to) {
   if ((from[1] < 0) == (to[1] < 0)) return 0;
   const double x = from[0] - from[1] * (to[0] - from[0]) / (to[1] - from[1]);
@@ -122,7 +122,7 @@ std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) 
   std::partial_sum(cell_start.begin(), cell_start.end(), cell_start.begin());
   std::vector<std::uint32_t> next(cell_start.begin(), cell_start.end() - 1);
   for (std::uint32_t& place : target) place = next[place]++;
-  // Sorts in place. A second copy would be most of the memory that building an array needs.
+  // Sorts in place, because a second copy would be most of the memory that building an array needs.
   for (std::size_t i = 0; i < target.size(); ++i)
     while (target[i] != i) {
       const std::uint32_t place = target[i];
@@ -151,8 +151,8 @@ void ObstacleArray::visit_window(const Window& window, Visit visit) const {
       const std::size_t cell = static_cast<std::size_t>(row - image_y * rows.number) * columns.number +
                                (column - image_x * columns.number);
       for (std::uint32_t k = binned_.cell_start[cell]; k < binned_.cell_start[cell + 1]; ++k) {
-        // Subtracts the origin first. Within the period this is exact, so forces do not depend on the
-        // droplet's position.
+        // Subtracts the origin first. Within the period this subtraction is exact, so that forces are the
+        // same in every period.
         const double x = (binned_.obstacles[k].x - window.origin_x) + image_x * period().along();
         const double y = (binned_.obstacles[k].y - window.origin_y) + image_y * period().across();
         const double margin = window.margin + binned_.obstacles[k].radius;
@@ -191,13 +191,13 @@ std::vector<std::uint32_t> ObstacleArray::posts() const {
 }
 
 bool ObstacleArray::is_within_post(const Eigen::Array2d& place) const {
-  // Follows each post from circle to circle, and from circles to walls. If two such paths meet and together
-  // make a turn about the place, the post surrounds it.
+  // Follows each post from circle to circle, and from circles to walls. If two paths meet and together make a
+  // turn about the place, the post surrounds the place.
   constexpr double same = 1e-6;  // sigma, between two places of one circle
   struct Reached {
     std::uint32_t circle;
-    Eigen::Array2d centre;  // relative to the place
-    int turns;              // crossings of the path to this circle
+    Eigen::Array2d centre;  // relative to `place`
+    int turns;              // crossings_of_axis() along the path to this circle
   };
   std::vector<std::vector<Reached>> reached(binned_.obstacles.size());
   std::vector<Reached> open;
@@ -274,8 +274,8 @@ std::vector<int> posts_among(std::span<const Obstacle> circles) {
   return post;
 }
 
-/// The place of each circle in its post, unwrapped along a path from circle to circle. NaN in posts that are
-/// connected to their own periodic image, because a circle has several such places there.
+/// The place of each circle in its post, without jumps at the borders of the period. NaN in posts that are
+/// connected to their own periodic image, because the place is then ambiguous.
 std::vector<Eigen::Array2d> ObstacleArray::places_in_posts() const {
   constexpr double nowhere = std::numeric_limits<double>::quiet_NaN(), same = 1e-6;  // sigma
   std::vector<std::optional<Eigen::Array2d>> places(binned_.obstacles.size());
@@ -320,7 +320,8 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
   const bool repeats_across = period().beside == 0;
   const double nearest_image =
       repeats_across ? std::min(period().along(), period().across()) : period().along();
-  // All pairs nearer than the margin are found; the margin grows until the smallest distance is certain.
+  // The search finds all pairs nearer than the margin. The margin grows until the smallest distance is
+  // certain.
   double margin = 0.125 * units::droplet_diameter;
   do {
     margin *= 2;

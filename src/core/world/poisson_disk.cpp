@@ -28,20 +28,20 @@ HWY_BEFORE_NAMESPACE();
 namespace clog::HWY_NAMESPACE {
 namespace {
 
-// Compiled without fused multiply-adds, so that every instruction set gives the same array.
+// This code is compiled without fused multiply-adds, so that every instruction set gives the same array.
 
 /// Random sequential addition of discs with a smallest gap between surfaces, in a period.
 ///
-/// Each arriving disc draws its place and its radius; a disc without room is discarded. The space of these
-/// draws has three dimensions: the two coordinates of the place, and the `excess` of the radius over the
-/// smallest radius. If all discs have one size, the excess is 0.
+/// Place and radius of each proposed disc are random; a disc without room is discarded. A disc is a point in
+/// three dimensions: the two coordinates of its place, and the `excess` of its radius over the smallest
+/// radius. If all discs have one size, the excess is 0.
 ///
-/// In every round, discs arrive as independent Poisson processes in all squares that may still have room. At
-/// first these squares are the cells of a grid. Discs are made square by square, in the order of memory.
+/// In every round, independent Poisson processes propose discs in all squares that may still have room. At
+/// first these squares are the cells of a grid. Discs are proposed square by square, in the order of memory.
 /// Discs that have room among the points of earlier rounds are then tried in random order. After each round,
 /// squares without room are dropped, and the others are cut into quarters. A square has a range of excesses;
-/// the range is halved when it exceeds the square's width. A square has room if the smallest disc of its
-/// range has room, so no acceptable disc is excluded.
+/// the range is halved when it exceeds the square's width. A square counts as having room if the smallest
+/// disc of its range has room, so no acceptable disc is excluded.
 class SequentialAddition {
  public:
   /// @param distance  between the centres of two of the smallest discs
@@ -65,7 +65,7 @@ class SequentialAddition {
     for (std::vector<float>* near : {&near_x_, &near_y_, &near_excess_}) near->resize(num_cells_around + 1);
   }
 
-  /// Adds points until there are `target` of them or no room is left.
+  /// Adds points until there are `target` points or no room is left.
   [[gnu::flatten]] void fill(std::size_t target) {
     for (const double darts_per_cell : first_rounds) {
       for (int row = 0; row < num_rows_; ++row)
@@ -107,24 +107,24 @@ class SequentialAddition {
   }
 
  private:
-  /// Numbers of darts (arriving discs) per cell in the first rounds. They are small, because at first most
-  /// darts have room. The statistics do not depend on these numbers, only the speed does.
+  /// Numbers of darts (proposed discs) per cell in the first rounds. The numbers are small, because at first
+  /// most darts have room. They affect only the speed, not the statistics.
   static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};
   static constexpr double darts_per_square = 1;  // number of darts per square in later rounds
   /// Number of a cell in the grid. The margins of the grid repeat the opposite side.
   using Cell = std::int32_t;
-  /// A square that may still have room, or a dart. Its members are its place, measured from the corner of its
-  /// cell, and the low end of its range of excesses.
+  /// A square that may still have room, or a dart. It has a place, measured from the corner of its cell, and
+  /// an excess: the low end of the square's range of excesses, or that of the dart.
   struct Square {
     float x, y, excess;
     Cell cell;
   };
 
-  /// The squares between two rounds. There are many, so an excess is stored only for a mixture.
+  /// The squares between two rounds. To save memory, excesses are stored only for discs of several sizes.
   class Squares {
    public:
     void assign(std::span<const Square> squares, bool have_excess) {
-      // Reuses the same memory, because the number of squares falls.
+      // The memory is reused, because the number of squares decreases.
       places_.clear();
       places_.reserve(squares.size());
       for (const Square& square : squares) places_.push_back({square.x, square.y, square.cell});
@@ -174,8 +174,8 @@ class SequentialAddition {
   boost::random::exponential_distribution<double> exponential_;
 
   static boost::random::mt19937_64 make_engine(std::uint32_t seed) {
-    std::seed_seq sequence{seed,
-                           std::uint32_t{0x0b57ac1e}};  // the constant keeps this stream apart from others
+    // The constant makes these numbers independent of other random numbers with the same seed.
+    std::seed_seq sequence{seed, std::uint32_t{0x0b57ac1e}};
     return boost::random::mt19937_64(sequence);
   }
 
@@ -189,12 +189,12 @@ class SequentialAddition {
 
   static Square whole(Cell cell) { return {0, 0, 0, cell}; }
 
-  /// Uniform in [0, 1), 24 bits.
+  /// A uniform number in [0, 1), from 24 bits.
   static float uniform(std::uint64_t bits) {
     return 0x1p-24F * static_cast<float>(static_cast<int>(bits & 0xffffff));
   }
 
-  /// Square of the distance that two discs must keep: (distance + both excesses)^2.
+  /// Square of the smallest distance between the centres of two discs: (distance + both excesses)^2.
   float reach2(float both_excesses) const {
     constexpr auto widened = static_cast<float>(1 + rounding);
     return distance2_ + widened * both_excesses * (2 * distance_ + both_excesses);
@@ -214,7 +214,7 @@ class SequentialAddition {
     return !is_near;
   }
 
-  /// Adds darts of a Poisson process in the squares; keeps those that have room so far.
+  /// Adds darts of a Poisson process in the squares, and keeps the darts that have room so far.
   /// @param square_at  (index) -> Square
   template <class SquareAt>
   void throw_darts(int num_squares, double darts_each, SquareAt square_at) {
@@ -245,7 +245,7 @@ class SequentialAddition {
       std::swap(darts_[i], darts_[other(engine_)]);
     }
     for (std::size_t i = 0; i < darts_.size() && num_points_ < target; ++i) {
-      constexpr std::size_t ahead = 8;  // random access is slow, so cells are loaded early
+      constexpr std::size_t ahead = 8;  // random access is slow, so cells are loaded in advance
       if (i + ahead < darts_.size()) prefetch_around(darts_[i + ahead].cell);
       if (has_room(darts_[i])) add_point(darts_[i]);
     }
@@ -275,7 +275,7 @@ class SequentialAddition {
     ++num_points_;
   }
 
-  /// Collects the points that may be within the distance of a place in `cell`.
+  /// Collects the points that may be too close to a place in `cell`.
   void look_around(Cell cell) {
     const auto cell_size = static_cast<float>(cell_size_);
     int num_near = 0;
@@ -303,7 +303,7 @@ class SequentialAddition {
   }
 
   /// Adds the quarters of a square, in each layer of excesses, that are not completely within the distance of
-  /// one point. Where squares are as small as the resolution of numbers, the distances agree with those of
+  /// one point. For squares as small as the resolution of numbers, the distances agree with those of
   /// has_room() to the last bit. So such a square either has room or is dropped.
   void add_parts(const Square& square) {
     if (is_taken(square.cell)) return;

@@ -1,4 +1,4 @@
-/// The points around a cell of poisson_disk.cpp for discs of one size; part of that file.
+/// The points around a cell, for discs of one size; part of poisson_disk.cpp.
 
 #if defined(CLOG_SURROUNDINGS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_SURROUNDINGS
@@ -18,12 +18,13 @@ HWY_BEFORE_NAMESPACE();
 namespace clog::HWY_NAMESPACE {
 namespace {
 
-/// Coordinates have single precision, relative to a cell; this additional distance covers the rounding.
+/// Coordinates have single precision, relative to a cell; this additional distance allows for the rounding
+/// errors.
 constexpr double rounding = 1e-5;
 constexpr float nowhere = 1e6;
 
 struct Point {
-  float x, y;  // relative to the corner of its cell
+  float x, y;  // relative to the corner of the point's cell
 };
 
 // All functions with vector arguments are inlined, so the warning about their calling convention does not
@@ -33,16 +34,16 @@ constexpr int lanes = 8;
 using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
 using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
 
-/// The points around a cell, for discs of one size. No branch depends on the random pattern of taken cells,
-/// because mispredicted branches would cost more than the work itself.
+/// The points around a cell, for discs of one size. No branch depends on which cells contain a point: this
+/// pattern is random, and mispredicted branches would cost more than the work itself.
 struct Surroundings {
   const Point* cell;
   std::ptrdiff_t row_length;
   float cell_size;
   float distance2;
 
-  /// Smallest size of a cell as a fraction of the distance. With this size, a search from the lower half of a
-  /// cell has to cover two cells downwards and one upwards.
+  /// Smallest size of a cell as a fraction of the distance between points. With this size, a search from the
+  /// lower half of a cell has to cover two cells downwards and one cell upwards.
   static constexpr double smallest_cell = 1 / 1.49;
 
   /// Whether a point is within the distance of a place in the cell.

@@ -36,8 +36,8 @@ TEST(SpDroplet, RestsOnAnObstacleAtTheAnalyticSag) {
 }
 
 TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
-  // Head-on contact is linear: M x'' = M g - b x' - k x. The disk starts at rest at x = 0. The motion is
-  // under-damped here.
+  // Head-on contact is linear: M x'' = M g - b x' - k x. The disk starts at rest at x = 0, and oscillates
+  // with these parameters.
   const double stiffness = 30;
   const double k = 4 * stiffness;
   const double mass = units::droplet_mass;

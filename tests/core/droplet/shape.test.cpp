@@ -131,7 +131,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
       position[n + i] = std::sin(2 * angle);
     }
     EXPECT_EQ(num_self_crossings(position), 1) << n << " vertices";
-    // The same contour with x and y exchanged. So the edges are sorted along y.
+    // The edges of this contour are sorted along y, because the contour extends farther along y than along x.
     Eigen::ArrayXd turned(2 * n);
     turned << position.tail(n), 2 * position.head(n);
     EXPECT_EQ(num_self_crossings(turned), 1) << n << " vertices, turned";
@@ -139,7 +139,7 @@ TEST(SelfCrossings, AreOneInAFigureOfEight) {
 }
 
 TEST(SelfCrossings, CountWhereAFilmIsPulledThroughItself) {
-  // A flat box. Its lower side bulges out through the upper side and back in.
+  // The lower side of a flat box bulges out through the upper side.
   Eigen::ArrayXd position(12);
   position << 0, 1, 2, 3, 3, 0, 0, 0, 2, 0, 1, 1;
   EXPECT_EQ(num_self_crossings(position), 2);

@@ -63,7 +63,7 @@ DropletRun falls_onto(RunParameters run, std::vector<Obstacle> obstacles, double
 const std::vector<Obstacle> narrow_gap{{10, 9.6, 0.15}, {10, 10.4, 0.15}};
 const std::vector<Obstacle> single{{10, 10, 0.15}};
 
-/// The centroid of the area. The mean of the vertices is not suitable, because it also moves if only the
+/// The centroid of the area. The mean of the vertices is not used, because the mean also moves if only the
 /// interface slides around the droplet.
 Eigen::Array2d centre(const DropletState& state) {
   return state.size() > 1 ? area_centroid(state.position) : state.centre();
@@ -200,8 +200,8 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
   EXPECT_NEAR(found->position[1], 10, 1e-8);
 }
 
-/// Points that springs tie to their places and to their neighbours. Each coordinate also has an upper bound:
-/// a contact that is much stiffer than the springs. All quantities are in units of a point's weight.
+/// Points that springs tie to their places and to their neighbours. A contact for each coordinate, much
+/// stiffer than the springs, acts as an upper bound. All quantities are in units of a point's weight.
 class PointsWithContacts {
  public:
   static constexpr Eigen::Index num_points = 16;
@@ -273,8 +273,8 @@ TEST(Equilibrium, IsFoundThoughContactsOpenAndCloseOnTheWay) {
 }
 
 TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
-  // Half of these searches fail at first. Such a search returns to its start, and finds the place of rest
-  // with halved steps.
+  // In half of the cases the first steps of the search lead away from the place of rest. The search must then
+  // return to its start, and find the place of rest with halved steps.
   int num_early = 0;
   for (const std::uint32_t seed : {3u, 7u, 11u, 14u, 16u}) {
     RunParameters run;
@@ -298,7 +298,7 @@ TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
 }
 
 TEST(Equilibrium, TooFarAwayIsRefused) {
-  // The droplet is so soft that it touches both obstacles at every place that the test uses. So its energy is
+  // The droplet is so soft that it touches both obstacles at every place that the test uses, so its energy is
   // convex.
   const RunParameters run = resolve(soft_disk(2));
   const ObstacleArray obstacles(20, narrow_gap);

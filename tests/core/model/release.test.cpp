@@ -56,9 +56,9 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
 }
 
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
-  // Springs along the interface have no energy, so the minimiser may follow an endless cycle. In three of
-  // these cases it does so with the springs of the growing droplet, and in one case with the springs of the
-  // run. One case also needs weaker springs.
+  // Springs along the interface have no energy, so the minimiser may follow an endless cycle. With the
+  // springs of the growing droplet this happens in three of these cases, and with the springs of the run in
+  // one case. One case also needs weaker springs.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));
@@ -128,7 +128,7 @@ TEST(Release, LeavesASoftDiskWithoutForce) {
 
 TEST(Release, TheLiteralPlacementEnclosesObstacles) {
   // The literal placement relaxes a full-sized polygon at the centre of the box. An obstacle inside the
-  // polygon does not push the interface, so it stays inside.
+  // polygon does not push the interface, so the obstacle stays inside.
   int num_runs_with_obstacles_inside = 0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const RunParameters run = test::bare_parameters(64);

@@ -73,7 +73,7 @@ Scene horseshoe(double right_lobe, double left_lobe) {
   return {with_short_edges(corners), {{0, 0, radius}}};
 }
 
-/// The same droplet, with each lobe resting on two small obstacles.
+/// The droplet of horseshoe(), with two small obstacles under each lobe.
 Scene horseshoe_with_lobes_in_gaps() {
   Scene scene = horseshoe(0.4, 0.4);
   constexpr double small = 0.05, overlap = 1.2 * range;
@@ -244,8 +244,8 @@ TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
   const double before = horseshoe(0.4, 0.4).geometry().wrapped_support;
   EXPECT_EQ(before, 1);
   // The half ring has the overlap range/2 along a width of 2 inner. The flat end of the lobe is at the
-  // distance `radius` from the obstacle's centre. At a distance s from the middle its overlap is range -
-  // s^2/(2 radius). The integral of this is 4/3 sqrt(2 radius range) range.
+  // distance `radius` from the obstacle's centre. At a distance s from the middle of this end, the overlap is
+  // range - s^2/(2 radius). The integral of this overlap is 4/3 sqrt(2 radius range) range.
   const double ring = range / 2 * 2 * inner;
   const double flat = 4.0 / 3 * std::sqrt(2 * radius * range) * range;
   EXPECT_NEAR(scene.geometry().wrapped_support, ring / (ring + flat), 0.04);

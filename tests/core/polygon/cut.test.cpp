@@ -20,7 +20,7 @@ Array2d mean(const Eigen::ArrayXd& all) {
   return {all.head(n).mean(), all.tail(n).mean()};
 }
 
-/// A droplet with a waist, two unequal lobes and irregular sides. It moves and turns.
+/// A moving and turning droplet with a waist, two unequal lobes and irregular sides.
 MovingPolygon random_droplet(std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> any(-1, 1);

@@ -141,8 +141,7 @@ TEST_P(MeshHold, IsBoundedByItsColumnAndFallsAsTheSquareOfTheEdge) {
   EXPECT_LT(bound_before, 0.01) << "of 512 vertices";
 }
 
-/// If the droplet came to rest here, its mesh would hold it, because nothing else can hold two lobes over one
-/// obstacle.
+/// Nothing except the mesh can hold two lobes over one obstacle, so every droplet must slide off.
 TEST_P(MeshHold, LetsADropletSlideOffAsItHasTo) {
   const RunParameters run = GetParam().parameters(GetParam().line_tension, 256);
   const auto obstacle = std::make_shared<const ObstacleArray>(one_obstacle());
@@ -158,7 +157,8 @@ INSTANTIATE_TEST_SUITE_P(OfPresets, MeshHold,
                          testing::Values(Case{"robust", robust_hanging, 0.24}, Case{"elastic", elastic, 0.1}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// A tighter bend can hold more weight, and so can a longer edge.
+/// A mesh can hold more weight on a tighter bend or with longer edges, so smaller obstacles need more
+/// vertices.
 TEST(MeshHoldOfAPlan, FollowsFromTheSmallestObstacle) {
   RunParameters run;
   run.dp.line_tension = 0.05;

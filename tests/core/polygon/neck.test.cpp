@@ -112,9 +112,9 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   }
 }
 
-/// On the contour of this oval, the product of the distances from two points at +-a is b^2. For a < b <
-/// sqrt(2) a the oval is 2 sqrt(b^2 - a^2) wide in the middle. An edge of length l is a chord there. The
-/// distance of the chord from the contour is l^2/8 times the curvature of the contour.
+/// For points on this oval, the product of the distances from two points at +-a is b^2. For a < b < sqrt(2) a
+/// the oval is 2 sqrt(b^2 - a^2) wide in the middle. An edge of length l in the middle is a chord of the
+/// oval. The distance between chord and oval is l^2/8 times the oval's curvature.
 TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
   const double a = 0.5;
   for (const double b : {0.5004, 0.502, 0.51}) {
@@ -168,8 +168,8 @@ TEST(ThinnestNeck, IsTheFilmAboveAnObstacleAndNotTheGapBetweenLobes) {
 }
 
 TEST(ThinnestNeck, HasOneLineOfSight) {
-  // Two parallel bars that are joined at one end. The far sides of the bars face each other over both bars
-  // and the water between the bars.
+  // Two parallel bars are joined at one end. The outer sides of the bars face each other, too, but a line
+  // between these sides crosses the water between the bars, so it is no neck.
   const Eigen::ArrayXd bars =
       polygon_of({{0, 0}, {2, 0}, {2, 0.3}, {0.5, 0.3}, {0.5, 0.35}, {2, 0.35}, {2, 0.65}, {0, 0.65}});
   EXPECT_NEAR(thinnest_neck(bars).width, 0.3, 1e-12);

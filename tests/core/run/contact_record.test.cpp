@@ -56,7 +56,8 @@ TEST(ContactRecord, CountsCirclesThatTheOutlineReaches) {
   EXPECT_TRUE(std::isnan(passage.found().first_distance));
   passage.move_by_steps_to(7);
   EXPECT_EQ(passage.found().number, 1) << "the second is 0.05 away from the lane";
-  // Droplet and circle touch when their centres are 0.6 apart. Across the flow their centres are 0.55 apart.
+  // Droplet and circle touch if their centres are 0.6 apart. The distance of the centres across the flow is
+  // 0.55.
   EXPECT_NEAR(passage.found().first_distance, 3 - std::sqrt(0.36 - 0.55 * 0.55), 0.004);
 }
 
@@ -87,7 +88,7 @@ std::vector<Obstacle> row(double from, double to) {
 }
 
 TEST(ContactRecord, CountsAPostOfManyCirclesOnce) {
-  // The row is longer than the range around the droplet in which circles are searched.
+  // Circles are searched only near the droplet, and the row is longer than this range.
   Passage along_a_row(row(4, 8));
   along_a_row.move_by_steps_to(8);
   EXPECT_EQ(along_a_row.found().number, 1);

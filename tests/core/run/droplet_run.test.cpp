@@ -93,7 +93,7 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
                             snapshot);
 }
 
-/// A soft droplet among obstacles with neither friction nor contact angles. So nothing holds the droplet.
+/// A soft droplet among obstacles that cannot hold it, because they have neither friction nor contact angles.
 RunParameters soft_among_walls() {
   RunParameters run;
   run.obstacles.box = 20;
@@ -187,8 +187,8 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
 }
 
 /// Tries snapshots that have a correct checksum and wrong content: several unlikely values replace each
-/// number in turn. resume() may refuse such a snapshot. Otherwise the run must continue to its end, without a
-/// crash or an endless loop.
+/// number in turn. resume() may refuse such a snapshot. If resume() accepts the snapshot, the run must
+/// continue to its end, without a crash or an endless loop.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   RunParameters run = with_friction(soft_among_walls(), 0.02, FilmFriction::off);
   run.dp.vertices = 32;
@@ -224,7 +224,7 @@ TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   EXPECT_GT(refused, 3 * numbers_of_shape);  // each number is replaced by infinity, NaN and -1e300
 }
 
-/// The times for which a droplet rested before its clog do not depend on how the clog is detected.
+/// A droplet's dwells before its clog do not depend on the way in which the clog is detected.
 TEST(DropletRun, ItsDwellsDoNotDependOnHowClogsAreFound) {
   RunParameters run = small_run(2);
   run.max_time = 5000;
@@ -251,7 +251,8 @@ TEST(DropletRun, ADropletThatHangsToTheEndOfItsTimeHasADwell) {
   EXPECT_EQ(result.dwells.longest[0].begin + result.dwells.longest[0].length, result.time);
 }
 
-/// The time at rest does not depend on how the clog is detected, so it must not count in the speed.
+/// Each way of detecting a clog waits for a different time after the droplet came to rest. This time must not
+/// count in the steady speed.
 TEST(DropletRun, ItsSteadyTravelEndsAtTheArrestHoweverTheClogIsFound) {
   RunParameters run = small_run(1);
   run.drag.terminal_speed = 0.1;  // the steady speed begins after 50 t0
@@ -315,8 +316,8 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   EXPECT_EQ(run.result().hold.mechanism, ClogMechanism::squeezed);
   EXPECT_GE(run.result().hold.geometry.num_arcs, 2);
 
-  // Further integration must not free the droplet. To test this, the run is repeated with a threshold that
-  // the droplet cannot reach. So the run does not end at the clog.
+  // The droplet must stay in place if the integration continues. To test this, the run is repeated with a
+  // threshold that the droplet cannot reach, so that the run does not end at the clog.
   RunParameters on = parameters;
   on.clog_energy = 1e-300;
   on.max_time = 2 * run.result().time + 100;
@@ -338,7 +339,7 @@ TEST(DropletRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
 }
 
 TEST(DropletRun, ADivergedRunIsAResult) {
-  // These parameters were not checked: the step is too long for the contacts of this soft disk.
+  // The step is too long for the contacts of this soft disk. resolve() would refuse it, but is not called.
   RunParameters parameters = small_run();
   parameters.model = Model::sp;
   parameters.wall_stiffness = 1e9;
@@ -349,7 +350,7 @@ TEST(DropletRun, ADivergedRunIsAResult) {
 }
 
 TEST(DropletRun, ABurstPolygonIsAResultToo) {
-  // These parameters were not checked: the step would have to be split into too many parts.
+  // The step would have to be split into too many parts. resolve() would refuse it, but is not called.
   RunParameters parameters = small_run();
   parameters.drag.terminal_speed = 100;
   parameters.time_step = 5;
@@ -368,9 +369,9 @@ TEST(DropletRun, FailsWhenTheInterfaceCrossesItself) {
   EXPECT_EQ(result.failed_by, FailedBy::crossing);
   EXPECT_LT(result.time, 1000);
 
-  // The sound distance is the distance at the last check at which the droplet did not cross itself. Such a
-  // check is made once in 2048 steps. A crossing that is still there at the next check fails the run. After
-  // the crossing, the sound distance stays, while the droplet sinks further.
+  // Every 2048 steps the run checks whether the droplet crosses itself. The sound distance is the distance at
+  // the last check without a crossing. If a crossing is still there at the next check, the run fails. From
+  // the crossing on, the sound distance stays, while the droplet sinks further.
   parameters.max_time = result.time - (2048 + DropletRun::steps_per_check) * parameters.time_step.value();
   const RunResult before = result_of(parameters, 1000);
   EXPECT_EQ(before.status, RunStatus::flowing);
@@ -434,9 +435,9 @@ RunParameters falls_onto_a_circle(double line_tension, double offset, int vertic
   return resolve(run);
 }
 
-/// The liquid hangs on both sides of a thin film over the obstacle. So four interfaces of tension Gamma have
-/// to carry its whole weight. Below Gamma = pi/16 they cannot. A stiffer droplet also rests on the obstacle
-/// itself.
+/// The liquid hangs on both sides of a thin film over the obstacle. The film has two interfaces on each side,
+/// so four times the tension Gamma carries the weight pi/4. Below Gamma = pi/16 the film breaks. A stiffer
+/// droplet stays on the obstacle.
 TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   for (const int vertices : {64, 128, 256}) {
     const RunResult broken = result_of(falls_onto_a_circle(0.95 * std::numbers::pi / 16, 0, vertices), 100);
@@ -477,8 +478,8 @@ TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
 }
 
 /// The run starts from a droplet that hangs over an obstacle. The neck of the droplet still gets thinner, but
-/// its place of rest is already known. If the neck at this place is too thin, the rest does not count as a
-/// clog. The droplet then breaks up as soon as its neck is too thin.
+/// the certified detection already knows the place of rest. If the neck will be too thin at this place, the
+/// droplet does not count as clogged. It must break up as soon as its neck is too thin.
 TEST(BreakUp, ComesBeforeACertifiedClog) {
   RunParameters run;
   run.dp.perimeter_spring = PerimeterSpring::rest;

@@ -76,7 +76,7 @@ TEST(DwellRecord, CountsTheDwellUnderWayUnlessItIsAClogs) {
 TEST(DwellRecord, SeesADropletThatCreepsAsStandingUntilItHasCrept) {
   DwellRecord record(dwell_length, speed);
   for (int time = 1; time <= 1000; ++time) record.add(time, time / 1024.0);
-  // The droplet takes a time of 52 to move by more than 0.05, again and again.
+  // The droplet moves by more than 0.05 in each time of 52, so all its dwells have this length.
   EXPECT_EQ(lengths(record.found(1000, false)), std::vector<double>{52});
   EXPECT_EQ(record.found(1000, false).last_distance, 19 * 52 / 1024.0);
 }
@@ -116,7 +116,7 @@ TEST(DwellRecord, AgreesWithAListOfAllDwells) {
     for (int i = 0; i < 300; ++i) {
       const double place = 0.1 * i;
       for (int stay = draw(random); stay >= 0; --stay) record.add(++time, place);
-      const double end = time + 1;  // the stay ends at the next check, unless it is the last one
+      const double end = time + 1;  // a dwell ends at the next check, except for the last dwell
       all.push_back({.length = end - begin, .distance = place, .begin = begin});
       begin = end;
     }

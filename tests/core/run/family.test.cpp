@@ -86,7 +86,7 @@ TEST(Family, BeginsWhereTheMotherEnds) {
   }
 }
 
-/// The ancestor of a family has the same run as a droplet for which break-up ends the run.
+/// The run of an ancestor equals a run with break-up=end.
 TEST(Family, HasTheAncestorOfARunThatEndsAtBreakUp) {
   RunParameters alone = soft_run(2);
   alone.dp.break_up = BreakUp::end;
@@ -112,8 +112,8 @@ TEST(Family, OutlivesADaughterWhoseRunFails) {
   }
 }
 
-/// Daughters that are much too fast begin, but do not stay whole. The ancestor's row is as without them, and
-/// the area of each family is that of its leaves.
+/// The runs of daughters that are much too fast begin, but diverge. They must not change the row of the
+/// ancestor. The area of a family is the sum over its leaves.
 TEST(Family, OutlivesADaughterThatDiverges) {
   RunParameters run = soft_run(1);
   run.drag.speed_exponent = -20;
@@ -185,8 +185,8 @@ TEST(Family, RefusesATornSnapshot) {
   EXPECT_THROW(FamilyRun::resume(run, walls, snapshot), Error);
 }
 
-/// In its own units a daughter is a droplet of diameter 1: lengths, times, speeds and Gamma follow from
-/// dimensions.
+/// In its own units a daughter is a droplet of diameter 1. The factors for lengths, times, speeds and Gamma
+/// follow from the dimensions of these quantities.
 TEST(Daughter, HasTheParametersOfItsSize) {
   const RunParameters ancestor = soft_run(1);
   const double d = 0.5;
@@ -196,7 +196,7 @@ TEST(Daughter, HasTheParametersOfItsSize) {
   EXPECT_EQ(daughter.dp.break_up_neck, ancestor.dp.break_up_neck / d);
   EXPECT_DOUBLE_EQ(*daughter.obstacles.density.per_area, *ancestor.obstacles.density.per_area * d * d);
   EXPECT_DOUBLE_EQ(daughter.max_time, 100 / std::sqrt(d));
-  // Speeds are in sqrt(sigma g). So in the units of a smaller droplet, the same speed is a larger number.
+  // Speeds are in sqrt(sigma g), so a given speed is a larger number in the units of a smaller droplet.
   EXPECT_DOUBLE_EQ(daughter.drag.terminal_speed * std::sqrt(d), ancestor.drag.terminal_speed);
   RunParameters faster_if_large = ancestor;
   faster_if_large.drag.speed_exponent = 1;

@@ -183,8 +183,7 @@ TEST(Resolve, FillsInTheStiffestStableContact) {
 
 TEST(Resolve, FillsInTheLargestStepThatHolds) {
   // Every automatic step must pass the checks of stability in resolve() and be as large as possible. The
-  // cases are stiff and soft droplets, many and few vertices, strong and weak drag, and given and automatic
-  // contact.
+  // cases are stiff and soft droplets, many and few vertices, and strong and weak drag.
   for (const int vertices : {16, 64, 256, 1024})
     for (const double line_tension : {0.0, 0.01, 0.3, 10.0})
       for (const double terminal_speed : {0.003, 0.03, 1.0}) {
@@ -196,7 +195,8 @@ TEST(Resolve, FillsInTheLargestStepThatHolds) {
         const RunParameters resolved = resolve(run);
         EXPECT_EQ(resolve(resolved).time_step, resolved.time_step);
         EXPECT_LE(*resolved.time_step, 0.2 * terminal_speed);
-        // The step is the smallest of its bounds, rounded to two significant digits.
+        // A step that is larger by a tenth must violate one of the bounds. The step has two significant
+        // digits.
         const double vertex_mass = units::droplet_mass / vertices;
         const double contact = std::sqrt(
             0.01 * vertex_mass / expected_pressure(resolved, scene_of(resolved).sharpest_bend(resolved)));
@@ -227,8 +227,8 @@ TEST(Resolve, TakesShorterStepsWithStrongerDragOrElasticInterface) {
 }
 
 TEST(Resolve, TakesStepsAsLongAsTheRootOfTheInertia) {
-  // Contact, area and springs keep their stiffness. If drag limited the step instead, the step would grow
-  // faster than the root of the inertia.
+  // The stiffnesses of contact, area and springs do not depend on the inertia, so the step grows as its root.
+  // The terminal speed is so large that drag does not limit the step.
   RunParameters run;
   run.dp.line_tension = 0.3;
   run.drag.terminal_speed = 0.1;

@@ -11,7 +11,8 @@ namespace {
 constexpr double terminal_speed = 0.5;
 constexpr double start = SteadyRecord::free_fall / terminal_speed;
 
-/// A droplet that falls freely until this time, and then at half the terminal speed. There is a check per t0.
+/// The place of a droplet that falls freely until the time `fall`, and then at half the terminal speed. There
+/// is a check per t0.
 double place_at(double time, double fall) {
   return terminal_speed * (std::min(time, fall) + 0.5 * std::max(0.0, time - fall));
 }

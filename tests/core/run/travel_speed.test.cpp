@@ -23,8 +23,8 @@ std::vector<double> correlated_noise(std::size_t size, double correlation, unsig
   return values;
 }
 
-/// The error of the mean of n = `size` such values. The square of the error is 1/n (1 + 2 sum_k (1 - k/n)
-/// c^k).
+/// The error of the mean of n = `size` values of correlated_noise(). The square of the error is
+/// 1/n (1 + 2 sum_k (1 - k/n) c^k).
 double exact_error(std::size_t size, double correlation) {
   const double n = static_cast<double>(size);
   double sum = 1;
@@ -54,8 +54,8 @@ TEST(TransientLength, FindsWhereAStepEnds) {
   }
 }
 
-/// Consider a speed with the mean 1 - exp(-t/tau) and the noise s. At the best cut, bias and scatter balance.
-/// There the squared deviation exp(-2 t/tau) is about equal to the variance s^2/5 of a batch's mean, so t =
+/// The speeds have the mean 1 - exp(-t/tau) and the noise s. At the best cut t, the squared deviation
+/// exp(-2 t/tau) of the mean is about equal to the variance s^2/5 of a batch's mean. So t is about
 /// tau log(sqrt(5)/s). Chance shifts the cut by a few batches, usually to later times.
 TEST(TransientLength, FindsWhereADecayDropsBelowTheNoise) {
   constexpr double tau = 40, noise = 0.05;
@@ -104,8 +104,8 @@ TEST(BlockedError, OfWhiteNoiseIsTheErrorOfTheMean) {
   EXPECT_NEAR(sum / 200 * std::sqrt(1000), 1, 0.02);
 }
 
-/// Compares the mean of many estimates with the true error. Without blocking the estimates would be 0.58 and
-/// 0.23 times the true error.
+/// Compares the mean of many estimates with the true error. If the correlation were neglected, the estimates
+/// would be 0.58 and 0.23 times the true error.
 TEST(BlockedError, OfCorrelatedValuesCountsTheCorrelation) {
   for (const auto& [correlation, tolerance] : {std::pair{0.5, 0.05}, {0.9, 0.1}}) {
     double sum = 0;

@@ -202,13 +202,14 @@ RunResult end_of(const RunParameters& run) {
 }
 
 TEST(OwnCircles, BlockOrPassADropletInANarrowChannelByItsStiffness) {
-  // A circle of diameter 1 fits into a free width of 1.45 - 0.4. Only a soft droplet fits into 1.05 - 0.4.
+  // A width of 1.45 - 0.4 is free beside the bump, where a circle of diameter 1 fits. A width of 1.05 - 0.4
+  // has room only for a soft droplet.
   EXPECT_EQ(end_of(narrow_channel(1.45, 3)).status, RunStatus::passed);
   EXPECT_EQ(end_of(narrow_channel(1.05, 0.1)).status, RunStatus::passed);
   const RunResult stiff = end_of(narrow_channel(1.05, 3));
   EXPECT_EQ(stiff.status, RunStatus::clogged);
-  // The droplet rests on the bump and the wall. A circle of radius 1/2 on the upper wall then touches the
-  // circle of radius 0.4 at (8, 0).
+  // The stiff droplet rests on the bump and on the opposite wall, approximately where a circle of radius 1/2
+  // touches this wall and the bump, which is a circle of radius 0.4 at (8, 0).
   const double height = 1.05 - 0.5, reach = 0.5 + 0.4;
   EXPECT_NEAR(stiff.release[0] + stiff.distance, 8 - std::sqrt(reach * reach - height * height), 0.1);
 }
@@ -228,8 +229,8 @@ TEST(OwnCircles, LetADropletPassBetweenWallsWhichHoldIt) {
   EXPECT_GT(result.release[1] + result.lateral, 0.4) << "not through the wall";
 }
 
-/// Up to four circles, some of which are larger than the droplet, in a box of any size. Most circles that
-/// are drawn overlap, and are drawn again.
+/// A device with up to four random circles, some larger than the droplet, in a box of random size. Most
+/// random circles are refused because they overlap, and are drawn again.
 RunParameters random_device(std::mt19937& random, Model model, Release release) {
   const auto draw = [&](double from, double to) { return std::uniform_real_distribution(from, to)(random); };
   while (true) {
@@ -288,8 +289,8 @@ TEST(OwnCircles, LetDropletsStartWithinTheBoxWhereverTheyAre) {
         ASSERT_GE(in_file.minCoeff(), 0);
         ASSERT_LT(in_file[0], obstacles.length);
         ASSERT_LT(in_file[1], obstacles.box);
-        // The nearest circle has the same distance in the file and in the array. A soft disk overlaps this
-        // circle.
+        // The distance to the nearest circle must be the same in the file as in the array. A soft disk may
+        // overlap this circle.
         ASSERT_NEAR(room_at(in_file, obstacles),
                     std::min(clearance(device, place[0], place[1], 12), room_at(in_file, obstacles)), 1e-9);
         const double least_room = model == Model::dp ? 0 : -1;

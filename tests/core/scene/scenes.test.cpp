@@ -36,10 +36,10 @@ DropletRun at_rest_on_a_wall(const RunParameters& run) {
   return droplet;
 }
 
-/// A two-dimensional drop on a wall. The shape follows from the Young-Laplace equation Gamma dphi/ds = Gamma
-/// kappa_0 + z, which a Runge-Kutta method integrates. Here z is the depth below the apex, and phi is the
-/// angle of the slope. The angle is 0 at the apex and the contact angle at the wall. On a wall that is not
-/// wetted the contact angle is pi.
+/// A two-dimensional drop on a wall. A Runge-Kutta method integrates the Young-Laplace equation
+/// Gamma dphi/ds = Gamma kappa_0 + z, in which z is the depth below the apex, and phi is the angle of the
+/// slope. At the apex phi is 0, and at the wall phi is the contact angle. On a wall that is not wetted the
+/// contact angle is pi.
 struct SessileDrop {
   double height = 0, area = 0, half_width = 0, depth_of_centroid = 0;
 };
@@ -98,8 +98,8 @@ TEST_P(OnAWall, ADropletHasTheShapeOfYoungAndLaplace) {
 }
 
 TEST(OnAWall, TheProfileIsThatOfYoungAndLaplaceFromTopToBottom) {
-  // The curvature of the interface grows with depth as z/Gamma. So the slope's angle and the depth fulfil
-  // Gamma (1 - cos phi) = Gamma kappa_0 z + z^2/2.
+  // With the depth z, the curvature of the interface grows by z/Gamma. The integral of this law over z is
+  // Gamma (1 - cos phi) = Gamma kappa_0 z + z^2/2, where phi is the angle of the slope.
   const double line_tension = 0.1;
   const DropletRun run = at_rest_on_a_wall(parameters(line_tension, 512));
   const Eigen::ArrayXd& position = run.droplet().state().position;
@@ -202,11 +202,11 @@ TEST(OnAWall, TheShapeOnAWettedWallHangsNeitherOnTheSpringsNorOnTheVertices) {
   EXPECT_NEAR(size_on_a_wetted_wall(run, 0.3).first / height, 1, 0.01);
 }
 
-/// The shape parameter of a droplet in an orifice with rounded tips. The droplet is made of two equal caps of
-/// circles, which touch the tips from both sides, and of the arcs of the tips between the caps. Each quarter
-/// is computed separately. Let h be the distance of a tip's centre from the axis, and c the distance of a
-/// cap's centre from the orifice. Then the radius of the cap is R = sqrt(c^2 + h^2) - tip_radius. The quarter
-/// consists of the cap's sector and the triangle of the three centres, without the tip's sector.
+/// The shape parameter of a droplet in an orifice with rounded tips. The outline consists of two equal arcs,
+/// the caps, one on each side of the orifice, and of the arcs of the tips between the caps. All quarters are
+/// equal. If h is the distance of a tip's centre from the axis, and c is the distance of a cap's centre from
+/// the orifice, the radius of the cap is R = sqrt(c^2 + h^2) - tip_radius. The area of a quarter is half of
+/// R^2 cap + c h - tip_radius^2 tip, where `cap` and `tip` are the angles of the arcs.
 double shape_of_two_caps(double orifice, double tip_radius) {
   const double h = orifice / 2 + tip_radius;
   const auto shape = [&](double c) {
@@ -265,9 +265,10 @@ TEST(InAChannel, TheLiteralContactLetsTheTipSinkIn) {
   EXPECT_LT(largest_shape_parameter(run, 0.7), shape_of_two_caps(narrowed, tip_radius) - 0.005);
 }
 
-/// The largest Gamma at which the weight can push a droplet of two caps through a chord. This Gamma is (M
-/// g)/max dP/dh, where P is the perimeter and h is the distance of the centroid from the chord. The maximum
-/// is taken over all pairs of caps that have the droplet's area and fit between flanks of 45 degrees.
+/// The largest Gamma at which the weight can push a droplet through a chord. The droplet consists of two caps
+/// of circles. This Gamma is M g divided by the largest dP/dh, where P is the perimeter and h is the distance
+/// of the centroid from the chord. All pairs of caps are considered that have the droplet's area and fit
+/// between flanks of 45 degrees.
 double largest_line_tension_that_passes(double chord) {
   struct Cap {
     double area, length, moment;  // moment is the area times the centroid's distance from the chord
@@ -316,8 +317,7 @@ TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
   RunParameters run = parameters(1, 128);
   run.drag.near_wall = 0.07;
   run.drag.terminal_speed = 0.03;
-  // Springs to the rest length hold the vertices. Otherwise the vertices would slide along the interface away
-  // from the walls.
+  // Without springs to the rest length, the vertices would slide along the interface away from the walls.
   run.dp.perimeter_spring = PerimeterSpring::rest;
   run.dp.gravity = Gravity::vertex;
   run.dp.perimeter_stiffness = 1;

@@ -12,8 +12,8 @@
 namespace clog {
 namespace {
 
-// These numbers were recorded with Boost 1.74 on x86-64. Obstacle arrays depend on them, so every version of
-// Boost must draw the same numbers.
+// The expected numbers were recorded with Boost 1.74 on x86-64. Obstacle arrays depend on these numbers, so
+// every version of Boost must draw the same.
 TEST(PortableExponential, DrawsTheRecordedNumbers) {
   boost::random::mt19937_64 engine;
   boost::random::exponential_distribution<double> draw;

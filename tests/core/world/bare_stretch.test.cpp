@@ -36,8 +36,8 @@ TEST(BareStretch, MayBeAmongTheCircles) {
 }
 
 TEST(BareStretch, IsNotWhatACircleCoversOverTheBorder) {
-  // The last circle covers 13 to 26. Because of the periodic border it also covers 0 to 6. So the bare
-  // stretch between 2.5 and 9.4 is only 3.4 long, and the one between 10.4 and 12 is 1.6 long.
+  // The last circle covers 13 to 26, and across the periodic border also 0 to 6. This leaves two bare
+  // stretches, from 6 to 9.4 and from 10.4 to 12.
   const std::vector<Obstacle> circles = {{2, 3, 0.5}, {9.9, 3, 0.5}, {12.5, 3, 0.5}, {19.5, 12, 6.5}};
   EXPECT_FALSE(conspicuous_bare_stretch(circles, &Obstacle::x, period));
 }
@@ -51,8 +51,8 @@ TEST(BareStretch, IsSeenAcrossAsWell) {
 }
 
 TEST(BareLanes, AreAllThatADropletFallsThrough) {
-  // Two walls at y = 1 and 7 in an array of width 8. One wide lane is between the walls, and another one is
-  // between their backs.
+  // Two walls at y = 1 and 7 are in an array of width 8. One wide lane is between the walls. Another lane
+  // leads across the periodic border from one wall to the other.
   std::vector<Obstacle> walls;
   for (int i = 0; i < 30; ++i)
     for (const double y : {1.0, 7.0}) walls.push_back({0.5 * i, y, 0.15});

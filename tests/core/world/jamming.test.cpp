@@ -58,7 +58,8 @@ INSTANTIATE_TEST_SUITE_P(Geometries, LargestDensity,
                                          Geometry{0.2, 0.3, 0.5, 60, 3}));
 
 TEST(LargestDensity, LiesEightToTenStandardDeviationsBelowTheMean) {
-  // Fluctuations matter in such small boxes. The error of their standard deviation is 4 % for 400 seeds.
+  // In such small boxes the number of obstacles fluctuates. From 400 seeds, the standard deviation of this
+  // number has an error of 4 %.
   for (const Geometry& geometry : {Geometry{0.2, 0.3, 0, 10, 400}, Geometry{0.2, 0.3, 0.3, 10, 400},
                                    Geometry{0.2, 0.3, 0.9, 10, 400}, Geometry{0.5, 2.5, 0.79, 30, 400}}) {
     double sum = 0, squares = 0;

@@ -90,10 +90,10 @@ TEST(Lattice, HasFourNeighboursAtTheExactGapAcrossItsBox) {
 }
 
 TEST(Lattice, HasTheCellOfCrystallography) {
-  // At tan = 1/3 a period of the square lattice has ten cells. The triangular lattice has 2, 2 and 14 posts
-  // at 30, 0 and 19.1 degrees. (At 19.1 degrees tan = sqrt(3)/5, and the cell is the sqrt(7) by sqrt(21) cell
-  // known from graphene.) The rhombic lattice with a shift of a third has three columns. Multiples of small
-  // cells fill the box.
+  // At the tangent 1/3, a period of the square lattice has ten cells. A period of the triangular lattice has
+  // 2 posts at 0 and 30 degrees, and 14 posts at 19.1 degrees, where the tangent is sqrt(3)/5. (The sqrt(7)
+  // by sqrt(21) cell is known from graphene.) A period of the rhombic lattice with a shift of a third has
+  // three columns. A large box contains several periods.
   struct Cell {
     LatticeKind kind;
     double tangent, largest_box, length, box;
@@ -137,8 +137,8 @@ TEST(Lattice, HasItsNearestNeighboursAtThePitchAcrossItsPeriod) {
 }
 
 TEST(Lattice, IsTheNearestThatIsPeriodicOfEveryKind) {
-  // The reference is a search of all lattice vectors along and across the flow for the angle nearest to the
-  // given one.
+  // For comparison, the test searches all lattice vectors along and across the flow for the angle nearest to
+  // the given angle.
   for (const LatticeKind kind : {LatticeKind::triangular, LatticeKind::rhombic})
     for (const double angle : {0.0, 4.0, -20.0, 27.7}) {
       const auto found = nearest_lattice({.box = 20, .lattice = kind, .pitch = 0.7, .lattice_angle = angle});
@@ -163,7 +163,7 @@ TEST(Lattice, IsTheNearestThatIsPeriodicOfEveryKind) {
 }
 
 TEST(Lattice, IsTheNearestThatIsPeriodic) {
-  // The reference is an exhaustive search of all boxes.
+  // For comparison, the test tries all boxes.
   for (const double angle : {0.0, 4.0, -20.0, 33.3, 45.0}) {
     const auto found = nearest_lattice({.box = 40, .pitch = 0.7, .lattice_angle = angle});
     double least = 90;
@@ -179,8 +179,8 @@ TEST(Lattice, IsTheNearestThatIsPeriodic) {
 }
 
 TEST(Lattice, LeavesTheReleaseToTheSeed) {
-  // The start is uniform in that part of a unit cell in which the droplet touches nothing. So in the frame of
-  // the lattice, both halves of each coordinate are equally likely. The tolerance for 400 seeds is five
+  // The start is uniform in the part of a unit cell in which the droplet touches nothing. In coordinates
+  // along the lattice, each half of the cell is therefore equally likely. For 400 seeds the tolerance is five
   // standard deviations of a fair coin.
   const double taken = (0.15 + 0.55) / 1.5;
   int num_ahead = 0;

@@ -44,8 +44,8 @@ TEST(SampleObstacles, KeepsTheGapPeriodicImagesIncluded) {
 }
 
 TEST(SampleObstacles, SaturatesAtTheJammingLimitOfRandomSequentialAddition) {
-  // At the jamming limit, discs of diameter gap + sigma_ob cover 0.547069 of the plane. In finite boxes this
-  // scatters by less than 0.001 here.
+  // At the jamming limit, discs of diameter gap + sigma_ob cover 0.547069 of the plane. In boxes of this size
+  // the covered fraction scatters by less than 0.001.
   double coverage = 0;
   for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
     const ObstacleArray array =
@@ -82,8 +82,8 @@ TEST(SampleObstacles, FillsALongArrayAsASquareOne) {
   EXPECT_EQ(array.period().across(), 10);
   EXPECT_GE(brute_force_gap(array), 0.4);
   EXPECT_DOUBLE_EQ(array.smallest_gap(), brute_force_gap(array));
-  // The expected number follows from Feder's coverage. The number scatters by 18 here, which is 0.2 times the
-  // square root of the area divided by the spacing.
+  // The expected number follows from Feder's coverage. In this array the number of obstacles scatters by 18,
+  // which is 0.2 times the square root of the area, divided by the spacing.
   const double expected = 0.547069 * 4000 / (std::numbers::pi / 4 * 0.49);
   EXPECT_NEAR(static_cast<double>(array.obstacles().size()), expected, 5 * 18);
   expect_no_room(array);
@@ -107,7 +107,7 @@ TEST(SampleObstacles, ReachesAGivenDensityExactly) {
 }
 
 TEST(SampleObstacles, TheSmallestGapDoesNotFixTheDensity) {
-  // The published rule is that all gaps are wider than w_ob. This rule allows both arrays, although one of
+  // The article states only that all gaps are wider than w_ob. Both arrays fulfil this rule, although one of
   // them is ten times as dense as the other.
   const ObstacleParameters sparse{.gap = 0.2, .diameter = 0.3, .density = 0.25, .box = 40};
   const ObstacleParameters saturated{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 40};
@@ -196,8 +196,8 @@ TEST(SampleObstacles, DrawsTheDiametersOfADilutedMixtureUniformly) {
   EXPECT_LT(chi2, 27.9);
 }
 
-/// Random sequential addition by its definition: disc by disc, with random numbers of the standard library.
-/// @return the first `count` discs that stay
+/// Adds discs at random places one after the other, as random sequential addition is defined. A disc without
+/// room is dropped. @return the first `count` discs that have room
 ObstacleArray one_by_one(const ObstacleParameters& parameters, std::size_t count, std::uint32_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> place(0, parameters.box);
@@ -237,8 +237,8 @@ double close_pairs(const ObstacleArray& array, double widest) {
 }
 
 TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
-  // Compares the numbers of neighbours at nearly the smallest distance. The arrays are close to saturation
-  // (2.79 per sigma^2).
+  // Compares how many neighbours are at nearly the smallest distance. The arrays are close to saturation,
+  // which is at 2.79 per sigma^2.
   const ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = 2.25, .box = 6};
   constexpr int num_arrays = 250;
   double difference = 0;
@@ -312,8 +312,7 @@ TEST_P(Gathering, FindsWhatBruteForceFinds) {
   const ObstacleArray array =
       sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 12.5, .boxes = GetParam()}, 2);
   const Period& period = array.period();
-  // The window extends across the end of the period along the flow, and across the beginning of the period
-  // across the flow.
+  // Along the flow, the window crosses the end of the period. Across the flow, it crosses the beginning.
   const ObstacleArray::Window window{period.along() - 1.5, 0.5, -0.6, 2.7, -1.1, 0.9, 0.4};
   std::vector<Obstacle> found;
   array.gather(window, found);
@@ -338,8 +337,8 @@ TEST(ObstacleArray, SeesOverlapsOfMixedSizes) {
 }
 
 TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
-  // A row of circles across the border of the period, a circle that overlaps only the end of the row, and two
-  // copies of one circle.
+  // A row of circles crosses the border of the period. Another circle overlaps the last circle of the row,
+  // but has no centre inside it. Two circles are copies of each other.
   const ObstacleArray array(
       10, {{9.8, 5, 0.3}, {0, 5, 0.3}, {0.2, 5, 0.3}, {0.6, 5, 0.3}, {5, 5, 0.3}, {5, 5, 0.3}});
   const std::vector<std::uint32_t> posts = array.posts();
@@ -355,7 +354,7 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
   EXPECT_NEAR(array.smallest_gap(), -0.6, 1e-12) << "of the two copies";
   EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1, 5, 0.3}}).smallest_gap(), -0.6, 1e-12)
       << "of two copies in one post";
-  // Gaps within a post do not count. A long post, however, has a gap to its own image.
+  // Gaps within a post do not count, but a gap between a post and its own periodic image does.
   EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1.4, 5, 0.3}, {1.65, 5, 0.3}, {4, 5, 0.3}})
                   .smallest_gap(),
               1.75, 1e-12);
@@ -386,10 +385,10 @@ TEST(ObstacleArray, FindsPlacesWithinAPost) {
   constexpr double pi = std::numbers::pi;
   std::vector<Obstacle> circles;
   const Eigen::Array2d ring{9, 1}, open{4, 6}, half{3, 0};
-  add_arc(circles, ring, 2, 0, 2 * pi);      // across two borders of the period
-  add_arc(circles, open, 1.5, 0.2, 2 * pi);  // with an opening
-  add_arc(circles, half, 1, -0.05, pi);      // on the lower wall, if there is one
-  for (double x = 0; x < 10; x += 0.15) circles.push_back({x, 8.5, 0.1});  // from border to border
+  add_arc(circles, ring, 2, 0, 2 * pi);      // The ring crosses two borders of the period.
+  add_arc(circles, open, 1.5, 0.2, 2 * pi);  // This ring has an opening.
+  add_arc(circles, half, 1, -0.05, pi);      // The half ring stands on the lower wall, if there is one.
+  for (double x = 0; x < 10; x += 0.15) circles.push_back({x, 8.5, 0.1});  // A row from border to border.
   const ObstacleArray periodic(10, circles);
   Period beside_walls(10);
   beside_walls.beside = 3;
@@ -409,7 +408,7 @@ TEST(ObstacleArray, FindsPlacesWithinAPost) {
     ASSERT_EQ(periodic.is_within_post(place), is_in_ring(place, 10)) << place.transpose();
     if (clearance(between_walls, place[0], place[1], 1) <= 0) continue;
     const bool is_in_pocket = (place - half).matrix().norm() < 1;
-    // The wall cuts the ring, and closes it.
+    // A wall cuts through the ring. The part in the device and the wall still enclose a place.
     ASSERT_EQ(between_walls.is_within_post(place), is_in_ring(place, 0) || is_in_pocket) << place.transpose();
     num_within += is_in_ring(place, 0) || is_in_pocket;
   }

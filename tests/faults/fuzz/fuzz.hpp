@@ -17,7 +17,7 @@ inline std::string text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// The input may be refused with an Error. Any other failure is a finding.
+/// Reads an input, which may be refused with an Error. Any other failure is a finding.
 template <typename Read>
 void may_be_refused(Read read) {
   try {

@@ -9,7 +9,7 @@
 namespace clog {
 
 /// Potential energy of a soft disk among obstacles (Cheng et al. Eq. 8), and the force that derives from it.
-/// Let d be the distance of the surface of an obstacle or wedge from the disk's centre (d < 0: the centre is
+/// Let d be the distance from the disk's centre to the surface of an obstacle or wedge (d < 0: the centre is
 /// inside). If d < sigma/2, this obstacle or wedge contributes (E_w/2)(1 - 2d/sigma)^2. The force is finite
 /// everywhere; exactly at an obstacle's centre it is zero.
 class SpForces {
@@ -42,9 +42,9 @@ class SpForces {
   void visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame, Visit visit) const;
 };
 
-/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but its loop uses
-/// the displacement per step as variable instead of the velocity. This shortens the longest chain of
-/// dependent operations in a step to one root, one division and a few sums.
+/// Soft disk: one point of mass M with drag -b_inf v. The integrator is that of DpDroplet, but the loop
+/// stores the displacement per step instead of the velocity. This shortens the longest chain of dependent
+/// operations in a step to one root, one division and a few sums.
 class SpDroplet final : public Droplet {
  public:
   SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);

@@ -8,7 +8,7 @@
 
 namespace clog {
 
-/// Perimeter [sigma] above which a polygon counts as burst. It is then not integrated any further.
+/// Perimeter [sigma] above which a polygon counts as burst. A burst polygon is not integrated any further.
 inline constexpr double burst_perimeter = 1000;
 
 /// A moving droplet. A run uses the droplets of both models through this class.
@@ -23,7 +23,7 @@ class Droplet {
   /// droplet restored from save() moves exactly like this one.
   virtual void rebuild_lists() = 0;
   void save(ByteWriter& bytes) const;
-  /// Restores what save() wrote for a droplet with the same parameters and obstacles.
+  /// Restores the state that save() wrote for a droplet with the same parameters and obstacles.
   void restore(ByteReader& bytes);
 
   /// Number of steps done so far; each sub-step counts as one.

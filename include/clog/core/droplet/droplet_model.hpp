@@ -28,13 +28,13 @@ struct DropletModel {
   /// Key of the parameter that is the droplet's stiffness.
   const char* stiffness_key;
 
-  /// Chooses the number of moving points, unless it is given.
+  /// Chooses the number of moving points, unless the user has given this number.
   /// @param obstacle_diameter  diameter of the smallest obstacle over which the droplet can hang; infinite if
   /// there is none [sigma]
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
   /// Width of the narrowest passage that the droplet's points resolve [sigma].
   double (*narrowest)(const RunParameters& run);
-  /// Computes the automatic values. Refuses given values that contradict them.
+  /// Computes the automatic values. Refuses given values that contradict the automatic ones.
   /// @param sharpest_bend  see Scene
   /// @throws Error
   void (*resolve)(RunParameters& run, double sharpest_bend);
@@ -44,8 +44,7 @@ struct DropletModel {
   int (*num_points)(const RunParameters& run);
   /// The droplet without walls and weight, around the origin: all x, then all y [sigma].
   Eigen::ArrayXd (*free_shape)(const RunParameters& run);
-  /// Distance between a free droplet's centre and a wall at which the wall begins to push the droplet
-  /// [sigma].
+  /// Distance from the centre of a free droplet at which a wall begins to push the droplet [sigma].
   double (*reach)(const RunParameters& run);
   ContactReach (*contact_reach)(const RunParameters& run);
   /// A droplet at rest, without weight, near the centre of the box.

@@ -79,11 +79,12 @@ struct Words<Stability> {
                                               {Stability::unknown, "unknown"}};
 };
 
-/// The stability of a droplet on which the forces nearly vanish. It follows from the smallest stiffness while
-/// the points adapt along the interface. The stiffness is a difference quotient of forces, taken with one
-/// step and with twice this step. The error of the stiffness is the difference of these two results plus
-/// round-off. If the smallest stiffness is positive, or negative, by more than its error, the droplet is
-/// stable, or unstable. Otherwise the stability is unknown. It is also unknown if the points cannot adapt.
+/// The stability of a droplet on which the forces nearly vanish. It follows from the smallest stiffness
+/// against displacements in which the points adapt along the interface. The stiffness is a difference
+/// quotient of forces. The function computes it twice, the second time with twice the step. The error of the
+/// stiffness is the difference between the two results plus round-off. The droplet is stable if the smallest
+/// stiffness is larger than its error, and unstable if it is below minus its error. Otherwise, or if the
+/// points cannot adapt, the stability is unknown.
 Stability stability_of(const EquilibriumForces& forces, const DropletState& stopped);
 
 }  // namespace clog

@@ -94,9 +94,9 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Relaxes the droplet by damped motion like that of a run. This is slower than FIRE, but it also works for
-/// some forces that derive from no energy. With such forces FIRE may cycle for ever, because FIRE adapts to
-/// the work that the forces do.
+/// Relaxes the droplet by damped motion, as in a run. This is slower than FIRE, but it also works for some
+/// forces that derive from no energy. With such forces FIRE may cycle for ever, because FIRE adapts to the
+/// work that the forces do.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;

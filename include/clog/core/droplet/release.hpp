@@ -32,8 +32,8 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 /// fraction of the weight of the vertex or disk. The force excludes the weight and the springs.
 inline constexpr double release_force_tolerance = 1e-4;
 /// This tolerance replaces release_force_tolerance for an interface with springs along it. The force of these
-/// springs derives from no energy. It keeps the interface sliding for ever in a cycle of 1e-3 sigma, while
-/// the droplet as a whole stays in place. No observed force exceeded 0.01 of the weight.
+/// springs derives from no energy. This force keeps the interface sliding for ever in a cycle of 1e-3 sigma,
+/// while the droplet as a whole stays in place. No observed force exceeded 0.01 of the weight.
 inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog

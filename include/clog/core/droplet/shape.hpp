@@ -8,7 +8,8 @@ namespace clog {
 /// polygon once: to each edge it adds the middle of a cubic. The cubic passes through the edge's two vertices
 /// and their two other neighbours. The middle is w (q_i + q_(i+1)) + w' (q_(i-1) + q_(i+2)), with w =
 /// refined_near and w' = refined_far. A chord of length l deviates from the curve through its ends by l^2/8
-/// times the curvature. A refined edge is half as long, so its deviation is a quarter of this.
+/// times the curvature. A refined edge is half as long, so its deviation is a quarter of that of the whole
+/// edge.
 inline constexpr double refined_near = 9.0 / 16;
 inline constexpr double refined_far = -1.0 / 16;
 
@@ -38,11 +39,11 @@ bool encloses(const Eigen::ArrayXd& position, double x, double y);
 
 /// Number of pairs of edges without a common vertex that cross each other.
 ///
-/// Two edges cross if each has its ends strictly on both sides of the other; edges that only touch do not
-/// cross. Edges with a common vertex are not tested. They could meet elsewhere only if one were exactly on
-/// top of the other, which rounding prevents. If the contour has no crossing and a positive area, it winds
-/// once around every point inside it, so no pocket of it encloses negative area. (The converse does not hold:
-/// a contour may cross itself and wind twice around a part of its area.)
+/// Two edges cross if the ends of each edge are strictly on opposite sides of the other edge. Edges that only
+/// touch do not cross. Edges with a common vertex are not tested. They could meet elsewhere only if one edge
+/// were exactly on top of the other, which rounding prevents. If the contour has no crossing and a positive
+/// area, it winds once around every point inside it, so no pocket of it encloses negative area. (The converse
+/// does not hold: a contour may cross itself and wind twice around a part of its area.)
 int num_self_crossings(const Eigen::ArrayXd& position);
 
 /// Point of the segment from `begin` to `end` that is nearest to a point [sigma].

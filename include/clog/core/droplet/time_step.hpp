@@ -17,8 +17,8 @@ struct Rate {
 /// Time constant with which the velocity of a droplet far from walls follows the forces, S V_t/g [t0].
 double relaxation_time(const RunParameters& run);
 
-/// Time step that resolves the drag's relaxation time [t0]. It is a fifth of this time. It is a tenth if
-/// springs carry tension, or if the drag is larger near walls or for motion relative to the mean.
+/// Time step that resolves the drag's relaxation time [t0]. The step is a fifth of this time. It is a tenth
+/// if springs carry tension, or if the drag is larger near walls or for motion relative to the mean.
 double drag_time_step(const RunParameters& run);
 
 /// Sets the automatic time step to `time_step`.

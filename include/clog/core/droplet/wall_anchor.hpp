@@ -29,7 +29,7 @@ struct WallPlace {
 };
 
 /// Distance of a point from a wall.
-/// @param wedges  those of the scene
+/// @param wedges  the wedges of the scene
 /// @param from_centre  vector from the wall's centre to the point
 inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> wedges,
                                  const Eigen::Array2d& from_centre) {
@@ -92,7 +92,7 @@ struct WallYield {
   double dissipated = 0;  ///< [g rho sigma^3]
   double excess = 0;      ///< largest amount by which a spring's force exceeds its limit [g rho sigma^2]
 
-  /// Counts the energy of the spring of a removed anchor as dissipated.
+  /// Adds the spring energy of a removed anchor to the dissipated energy.
   void forget(const WallAnchor& anchor, double stiffness) {
     dissipated += 0.5 * stiffness * anchor.slip * anchor.slip;
     excess = std::max(excess, stiffness * std::abs(anchor.slip));
@@ -102,7 +102,8 @@ struct WallYield {
   double hold(WallAnchor& anchor, double slip, double least, double most, double stiffness, Purpose purpose) {
     const double held = std::clamp(slip, least, most);
     excess = std::max(excess, stiffness * std::abs(held - anchor.slip_of_force(slip)));
-    // This is the trapezoidal rule, as in the integrator: the mean of the earlier and the present force acts.
+    // The trapezoidal rule, as in the integrator, multiplies the slip by the mean of the earlier and the
+    // present force.
     dissipated += stiffness * (anchor.slip + held) / 2 * (slip - held);
     anchor.slip = held;
     anchor.yields = purpose == Purpose::equilibrium && held != slip ? 1 : 0;

@@ -46,7 +46,7 @@ class OwnCircles {
   /// @throws Error if only their checksum is known
   const std::vector<Obstacle>& circles() const;
   /// The circles, each with a radius.
-  /// @param missing  the radius of those without one [sigma]
+  /// @param missing  radius for circles that have none [sigma]
   /// @throws Error if only their checksum is known
   std::vector<Obstacle> with_radii(double missing) const;
 

@@ -8,9 +8,9 @@
 
 namespace clog {
 
-/// Tension of the interface on a wall divided by Gamma. If it is not given, it is minus the mean cosine of
-/// the receding and the advancing angle. This assumes that the wall resists both motions equally. Without
-/// contact angles, the tension is 1.
+/// Tension of the interface on a wall divided by Gamma. If the user does not give the tension, it is minus
+/// the mean cosine of the receding and the advancing angle. This mean assumes that the wall resists both
+/// motions equally. Without contact angles, the tension is 1.
 inline double wall_tension(const DpParameters& dp) {
   if (dp.wall_tension) return *dp.wall_tension;
   if (!dp.receding_angle || !dp.advancing_angle) return 1;
@@ -18,7 +18,7 @@ inline double wall_tension(const DpParameters& dp) {
   return -(cosine(*dp.receding_angle) + cosine(*dp.advancing_angle)) / 2;
 }
 
-/// Young's contact angle of the droplet's fluid [degrees]; minus its cosine is wall-tension.
+/// Young's contact angle of the droplet's fluid [degrees]; wall-tension is minus the cosine of this angle.
 inline double young_angle(const DpParameters& dp) {
   const double tension = wall_tension(dp);
   return portable::atan2(std::sqrt(1 - tension * tension), -tension) * 180 / std::numbers::pi;

@@ -11,9 +11,9 @@ namespace clog {
 /// A process can find the text of a checksum only if it has read this text before.
 class LaboratoryText {
  public:
-  /// @throws Error if nothing in the text is `key = value`
+  /// @throws Error if the text contains no `key = value`
   explicit LaboratoryText(const std::string& text);
-  /// @throws Error if it does not have the form of check_sum()
+  /// @throws Error if the argument does not have the form of check_sum()
   static LaboratoryText from_check_sum(std::string_view check_sum);
 
   /// CRC-64/XZ of the text: 16 hexadecimal digits.

@@ -127,7 +127,7 @@ struct DpParameters {
   double perimeter_stiffness_ratio = 1e-3;    ///< K_l divided by Gamma, for springs to the rest length
   WallContact wall_contact = WallContact::edge;
   /// Distance from a wall's surface at which contact begins [sigma]. Empty: half a vertex diameter, as
-  /// published. Every gap is then narrower by a vertex diameter.
+  /// published; every gap is then effectively narrower by a vertex diameter.
   std::optional<double> contact_range = 0;
   /// Tension of the interface on a wall, divided by Gamma: (gamma_so - gamma_sw)/gamma_ow, which is minus the
   /// cosine of the contact angle (Young). It is 1 if a film of water covers all walls, as in the paper's
@@ -160,17 +160,17 @@ struct DpParameters {
 /// Smallest width of a box: in a narrower box a droplet could touch its own periodic image [sigma].
 inline constexpr double narrowest_period = 5;
 
-/// The rectangle after which an array repeats: square boxes in a row along the flow, or one box with a
-/// separate length along the flow.
+/// The rectangle that an array repeats. It consists of square boxes in a row along the flow, or of one box
+/// with a separate length along the flow.
 struct Period {
   double box = 0;  ///< [sigma]
   int boxes = 1;
   double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
-  double beside = 0;  ///< width of the empty space beside the box; it keeps the droplet away from images of
-                      ///< the other side [sigma]
+  double beside = 0;  ///< width of an empty strip beside the box, which keeps the droplet away from the next
+                      ///< periodic image of the array [sigma]
 
   Period() = default;
-  // Implicit, because every box is a period of one box.
+  // The constructor is implicit, because every box is a period of one box.
   Period(double edge, int number = 1) : box(edge), boxes(number) {}
 
   double along() const { return length > 0 ? length : boxes * box; }
@@ -187,7 +187,7 @@ struct ObstacleDensity {
 
   /// A saturated array: obstacles are added until no further one fits.
   ObstacleDensity() = default;
-  // Implicit, because every number of obstacles per sigma^2 is a density.
+  // The constructor is implicit, because every number of obstacles per sigma^2 is a density.
   ObstacleDensity(double number_per_area) : per_area(number_per_area) {}
   static ObstacleDensity share_of_saturated(double share) {
     ObstacleDensity density;
@@ -207,7 +207,7 @@ struct ObstacleParameters {
   double gap = 0.2;            ///< smallest surface-to-surface distance w_ob [sigma]
   double diameter = 0.3;       ///< sigma_ob; for a mixture, the mean of the drawn diameters [sigma]
   double diameter_spread = 0;  ///< drawn diameters are uniform in diameter * (1 -+ spread)
-  /// The density of random arrays. That of a lattice or of user-supplied circles is not stored here.
+  /// The density of random arrays. The density of a lattice or of user-supplied circles is not stored here.
   ObstacleDensity density = ObstacleDensity::share_of_saturated(published_share_of_saturated);
   double box = 500;  ///< period L across the flow [sigma]
   int boxes = 1;     ///< period along the flow divided by the period across it
@@ -218,7 +218,7 @@ struct ObstacleParameters {
   std::optional<OwnCircles> own = {};  ///< circles of the layout `file`; they determine gap and density
   Release release = Release::centre;
   double length = 0;  ///< period along the flow; 0: boxes times box [sigma]
-  // The members from here on are for user-supplied circles, in the coordinates of these circles.
+  // The members from here on apply to user-supplied circles, and use the coordinates of these circles.
   SideWalls side_walls = SideWalls::off;  ///< straight walls at y = 0 and y = box
   double entrance = 0;                    ///< x of the line on which droplets are released [sigma]
   double entrance_from = 0;               ///< y at which the line begins [sigma]
@@ -247,14 +247,14 @@ struct ChannelParameters {
 };
 
 /// The drag on a vertex is -(zeta v + (c - 1) b_inf (v - v_cm))/N_v, with zeta = b_inf (1 + (b_0/b_inf)
-/// (sigma/d)^alpha). For c = 1 this is Cheng et al. Eq. 7. The second term damps only changes of shape; c is
-/// the drag of motion relative to the centre of mass, divided by b_inf.
+/// (sigma/d)^alpha). For c = 1 this is Cheng et al. Eq. 7. The second term damps only changes of shape. The
+/// drag coefficient of motion relative to the centre of mass is c b_inf.
 struct DragParameters {
   double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; gives b_inf = M g / V_t
-  double speed_exponent = 0;            ///< n: the V_t of a daughter is d^n times that of the ancestor
+  double speed_exponent = 0;            ///< n: a daughter of diameter d has d^n times the V_t of the ancestor
   double near_wall = 0;                 ///< near-wall drag b_0/b_inf of polygons; soft disks have none
   double near_wall_exponent = 4.0 / 3;  ///< exponent alpha; 4/3 is calibrated in Appendix A of Cheng et al.
-  double near_wall_cutoff = published_contact_range;  ///< smaller d count as this one [sigma]
+  double near_wall_cutoff = published_contact_range;  ///< smaller d are raised to this value [sigma]
   double relative = 1;  ///< c, the relative drag divided by b_inf; only for polygons
 };
 

@@ -12,9 +12,9 @@ namespace clog {
 class Refusal : public Error {
  public:
   struct About {
-    std::string key = {};  ///< key with the refused value; if empty, the keys are in `excluded`
-    std::vector<std::string> named = {};     ///< other keys with values that the text contains
-    std::vector<std::string> excluded = {};  ///< given keys that contradict the value, or each other
+    std::string key = {};                 ///< key with the refused value; if empty, `excluded` has the keys
+    std::vector<std::string> named = {};  ///< other keys whose values the text contains
+    std::vector<std::string> excluded = {};  ///< given keys that contradict the refused value, or each other
     std::string added = {};                  ///< key that the remedy adds
     std::vector<double> nearest = {};        ///< possible values next to the refused one, if there are few
   };
@@ -26,7 +26,7 @@ class Refusal : public Error {
 
   const About& about() const { return about_; }
   const std::string& without_remedy() const { return text_; }
-  /// Whether the text contains the value of this key beside that of the refused one.
+  /// Whether the text contains the value of this key in addition to the refused value.
   bool names(std::string_view other) const;
   /// The refusal with more text around it.
   Refusal between(const std::string& before, const std::string& after) const;

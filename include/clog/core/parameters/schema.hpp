@@ -20,8 +20,8 @@ namespace clog {
 using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
 /// `number_or_share`: a number, or a share of the largest possible number, as text like `12.5%`. `file`: the
-/// key gives the name of a file, the parameter contains its content. `text`: a description, of which results
-/// contain the checksum.
+/// key gives the name of a file, the parameter contains its content. `text`: a description; results contain
+/// only its checksum.
 enum class ValueKind { number, number_or_share, integer, word, file, text };
 
 /// The purpose of a parameter.
@@ -66,17 +66,18 @@ struct Parameter {
   const ParameterScope* scope;
   const ParameterScope*
       automatic_in;  ///< runs in which the value, unless given, follows from other parameters
-  /// Rank among automatic values. An automatic value depends only on automatic values of lower rank. 0: it
-  /// depends on no other automatic value, and no other one depends on it.
+  /// Rank among automatic values. An automatic value depends only on automatic values of lower rank. An
+  /// automatic value of rank 0 depends on no other automatic value, and no automatic value depends on it.
   int automatic_order;
   ParameterRange range;  ///< the range, if the values are numbers
   bool has_own_column;   ///< false: the column describes other parameters as well
   bool shapes_array;     ///< whether different values give different obstacle arrays
   /// The column's value for runs to which the parameter does not apply; usually unset.
   ParameterValue elsewhere;
-  /// The value that the parameter has for all runs in files older than the parameter; unset if it is unknown.
+  /// The value for runs in files that are older than the parameter; unset if the value is unknown.
   ParameterValue before;
-  /// The value by which runs are compared, unset for `get`; null: always `get`.
+  /// Returns the value by which runs are compared. If it returns an unset value, or is null, runs are
+  /// compared by `get`.
   ParameterValue (*compared)(const RunParameters&);
 
   ValueKind kind;
@@ -87,7 +88,7 @@ struct Parameter {
   void (*set)(RunParameters&, const ParameterValue&);
 
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
-  /// Whether the parameter's value, unless it is given, follows from other parameters of this run.
+  /// Whether the parameter's value follows from other parameters of this run if the user does not give it.
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
   /// Whether the automatic value may follow from the automatic value of the other parameter.
   bool may_follow_from(const Parameter& other) const {
@@ -101,7 +102,8 @@ std::span<const Parameter> parameter_schema();
 /// @throws std::out_of_range if no parameter has this key
 const Parameter& parameter(std::string_view key);
 
-/// Refuses numbers outside their range, and values other than the default that do not apply to the run.
+/// Refuses numbers outside their range. Also refuses parameters that do not apply to the run, unless they
+/// have their default.
 /// @throws Error naming the key, its value, the reason and a remedy
 void check_each(const RunParameters& run);
 

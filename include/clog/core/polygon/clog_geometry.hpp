@@ -14,7 +14,7 @@ namespace clog {
 struct Surroundings {
   std::vector<Obstacle> circles;
   std::vector<Wedge> walls;
-  /// An edge above other parts of the interface, and the circle that it touches through them, enlarged by the
+  /// An edge that touches a circle through other parts of the interface, and this circle, enlarged by the
   /// films in between; see WallContacts.
   struct Layer {
     Eigen::Index edge;

@@ -23,8 +23,8 @@ struct MovingPolygon {
 std::array<MovingPolygon, 2> cut(const MovingPolygon& whole, const Neck& neck);
 
 /// The polygon with `num_vertices` vertices at equal distances along its contour. The first new vertex is at
-/// the first old one. The polygon is then magnified about its area centroid, so that its area stays the same.
-/// The mean velocity of the vertices stays the same, too.
+/// the first old vertex. The polygon is then magnified about its area centroid, so that its area stays the
+/// same. The mean velocity of the vertices stays the same, too.
 MovingPolygon with_vertices(const MovingPolygon& polygon, int num_vertices);
 
 }  // namespace clog

@@ -14,8 +14,8 @@ namespace clog {
 /// Obstacles that a droplet has met.
 struct Contacts {
   /// Number of contacts with a circle, a post of several circles, or a wedge. An obstacle counts again if the
-  /// droplet was farther away than ContactRecord::parting in between. Its periodic images count as other
-  /// obstacles.
+  /// droplet was farther away than ContactRecord::parting in between. Periodic images of an obstacle count as
+  /// other obstacles.
   std::int64_t number = 0;
   /// Distance of the droplet at the first contact; NaN if there was none [sigma].
   double first_distance = std::numeric_limits<double>::quiet_NaN();

@@ -16,8 +16,8 @@ class DisplacementRecord {
   void add(double time, double displacement);
 
   /// Mean speed between two moments: the end of the transient, and the moment after which the droplet
-  /// advances by at most 0.01 sigma. NaN if it travelled less than half a diameter in that time, or if
-  /// travel_speed() gives NaN.
+  /// advances by at most 0.01 sigma. NaN if the droplet travelled less than half a diameter in that time, or
+  /// if travel_speed() gives NaN.
   TravelSpeed travel_speed() const;
 
   void save(ByteWriter& bytes) const;

@@ -54,13 +54,13 @@ struct Words<FoundBy> {
 /// ratio.
 inline constexpr double diverged_energy_ratio = 1e8;
 /// Relative error of the area above which the integration has failed. Compressibility and line tension change
-/// the area much less.
+/// the area by much less than this.
 inline constexpr double diverged_area_error = 0.5;
 
-/// Distance that a droplet on a flat wall sinks under its weight, after it touched the wall without weight
-/// [sigma]; NaN in other scenes.
+/// Distance by which a droplet on a flat wall sinks when its weight begins to act [sigma]; NaN in other
+/// scenes.
 struct Sag {
-  double centre = std::numeric_limits<double>::quiet_NaN();  ///< of the area's centroid
+  double centre = std::numeric_limits<double>::quiet_NaN();  ///< distance by which the area's centroid sinks
   double top = std::numeric_limits<double>::quiet_NaN();     ///< delta_s
 };
 
@@ -72,7 +72,7 @@ struct ThinnestNeck {
 };
 
 /// The results of one run. If a clog is certified, values with the note "certified: at rest" are those of the
-/// equilibrium. An empty `optional` is unknown. This happens only in rows of older files.
+/// equilibrium. An empty `optional` is a value that is unknown, because an older version wrote the row.
 struct RunResult {
   RunStatus status = RunStatus::running;
   std::optional<FoundBy> clogged_by = FoundBy::not_clogged;
@@ -85,13 +85,13 @@ struct RunResult {
   double lateral = 0;   ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;      ///< [t0]
   TravelSpeed speed;    ///< speed of the run so far
-  SteadyTravel steady;  ///< until the end, or until the last dwell of a clogged run began
+  SteadyTravel steady;  ///< travel until the end, or until the last dwell of a clogged run began
   Dwells dwells;
   Contacts contacts;
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
   double shape_parameter = 0;       ///< A at the end, certified: at rest
   Hold hold;                        ///< what holds a clogged droplet, certified: at rest
-  Passage passage;                  ///< through a channel; NaN elsewhere
+  Passage passage;                  ///< passage through a channel; NaN elsewhere
   Sag sag;                          ///< certified: at rest
   ThinnestNeck neck;
   /// Number of times that a vertex of the interface passed through another part of it and was pushed back.
@@ -100,25 +100,25 @@ struct RunResult {
   /// [sigma].
   Eigen::Array2d release{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   std::int64_t steps = 0;  ///< integrated steps; each sub-step counts as one
-  std::string message;     ///< why it failed
+  std::string message;     ///< why the run failed
 };
 
 /// One droplet followed from its release until it clogs, breaks up, passes, or reaches max-time.
 ///
 /// The droplet counts as clogged when E_k/E_t has been below clog-energy at two consecutive checks, after at
 /// least ten relaxation times V_t/g (E_t: kinetic energy at terminal speed). The exception is a droplet that
-/// balances, according to stability_of(): its run continues, and tests the stability again when E_k/E_t has
-/// changed tenfold. With clog-detection=certified, the droplet also counts as clogged as soon as
+/// balances, according to stability_of(): its run continues, and the stability is tested again when E_k/E_t
+/// has changed tenfold. With clog-detection=certified, the droplet also counts as clogged as soon as
 /// find_equilibrium() finds its place of rest. A droplet with a neck thinner than break-up-neck has broken
-/// up, however close to rest it is; an equilibrium with such a neck does not count. If the interface crosses
-/// itself although self-contact is on, the run fails. The course of a run depends on its parameters alone. It
-/// depends neither on the calls of advance() nor on the method that detects clogs.
+/// up, even if it is almost at rest; an equilibrium with such a thin neck does not count. If the interface
+/// crosses itself although self-contact is on, the run fails. The course of a run depends on its parameters
+/// alone. It depends neither on the calls of advance() nor on the method that detects clogs.
 class DropletRun {
  public:
   /// Clogs and the end of the run are checked, and r(t) is recorded, once in this number of steps.
   static constexpr int steps_per_check = 64;
-  /// A snapshot is taken once in this number of steps. With 256 vertices they take about a quarter of a
-  /// second.
+  /// A snapshot is taken once in this number of steps. With 256 vertices, these steps take about a quarter of
+  /// a second.
   static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
   /// Releases the droplet as its scene defines. @param run  resolved parameters, here and below
@@ -130,15 +130,15 @@ class DropletRun {
   DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
              double passing_distance = std::numeric_limits<double>::infinity());
 
-  /// A run restored from a snapshot() continues bit for bit like the original. This works because the
-  /// original run, too, rebuilds its contact lists when it takes the snapshot.
+  /// A run restored from a snapshot() continues bit for bit like the original, because the original run also
+  /// rebuilds its contact lists when it takes the snapshot.
   /// @param run, obstacles  as in the original run
   /// @throws Error if the bytes are not a snapshot of such a run
   static DropletRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
                            std::span<const std::byte> snapshot);
   /// The last snapshot; empty before the first one.
   const std::vector<std::byte>& snapshot() const { return snapshot_; }
-  /// The state of a run after its droplet broke up. broken() restores the result from it.
+  /// The state of a run after its droplet broke up, from which broken() restores the run.
   std::vector<std::byte> state_at_break_up() const;
   /// A run after its droplet broke up. @throws Error if the bytes are not from state_at_break_up()
   static DropletRun broken(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
@@ -164,7 +164,7 @@ class DropletRun {
   double kinetic_energy_ratio() const;
   /// The gravity term measures the height from the place of release.
   PotentialEnergy potential_energy() const;
-  /// Starts to add up the energy lost to drag, see Droplet::work().
+  /// Starts to sum the energy lost to drag, see Droplet::work().
   void measure_dissipation() { droplet_->measure_dissipation(); }
   const Droplet& droplet() const { return *droplet_; }
   const ObstacleArray& obstacles() const { return *obstacles_; }

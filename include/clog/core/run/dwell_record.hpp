@@ -20,8 +20,8 @@ struct Dwell {
 struct Dwells {
   static constexpr std::size_t most = 8;
 
-  /// The longest dwell of all, the longest of the dwells before that, and so on. If there are more than
-  /// `most`, the earliest are dropped.
+  /// The longest dwell of the run, then the longest of the dwells before it, and so on. If there are more
+  /// than `most`, the earliest are dropped.
   std::array<Dwell, most> longest;
   /// Smallest time for which first_longer() may be called [t0]; NaN if the dwells are unknown.
   double known_from = std::numeric_limits<double>::quiet_NaN();
@@ -32,13 +32,12 @@ struct Dwells {
   /// The first dwell longer than `time`; nullptr if there was none.
   /// @param time  not less than known_from [t0]
   const Dwell* first_longer(double time) const;
-  /// @param dwell  must be later than all dwells that were kept before
+  /// @param dwell  must be later than all dwells kept so far
   void keep(const Dwell& dwell);
 };
 
-/// Follows a droplet's distance, and finds its dwells. The first dwell begins at the release. A dwell ends
-/// when the droplet is farther than dwell-length from the place where this dwell began; then the next dwell
-/// begins.
+/// Follows a droplet's distance, and finds its dwells. The first dwell begins at the release. A dwell ends,
+/// and the next begins, when the droplet is farther than dwell-length from the place where the dwell began.
 class DwellRecord {
  public:
   /// Dwells are recorded only if they are longer than this many times dwell_length/terminal_speed, the time

@@ -38,17 +38,17 @@ struct FamilyPoint {
 
 /// A droplet of a family.
 struct Member {
-  /// Empty for the ancestor. A daughter's path is that of its mother, and 0 or 1.
+  /// Empty for the ancestor. A daughter's path is the path of its mother followed by 0 or 1.
   std::string path;
   double diameter = 1;  ///< sqrt(area of the member / area of the ancestor)
   FamilyPoint birth;
-  FamilyPoint end;  ///< if the member failed: where it was last whole, with a `lateral` of NaN
+  FamilyPoint end;  ///< if the member failed: the last point where it was intact, with a `lateral` of NaN
   MemberEnd status = MemberEnd::failed;
   std::optional<ClogMechanism> mechanism = ClogMechanism::none;
 };
 
 /// Longest path of a member. Each break-up takes at least 2 % of the area, so real families stay far below
-/// this limit. The parts of a droplet with such a path are not followed.
+/// this limit. The parts of a droplet with a path of this length are not followed.
 inline constexpr std::size_t longest_path = 64;
 
 void save(const std::vector<Member>& members, ByteWriter& bytes);
@@ -71,11 +71,11 @@ RunParameters daughter_parameters(const RunParameters& ancestor, double diameter
 ObstacleArray obstacles_in_units_of(const ObstacleArray& obstacles, double diameter);
 
 /// A droplet, and with break-up=daughters all droplets into which it breaks up. They are run one after the
-/// other: the ancestor, then its daughters in the order in which they are found.
+/// other: the ancestor, then its daughters in the order in which the program finds them.
 ///
 /// A droplet that breaks up is cut along its neck. Each daughter takes its part of the interface, with the
-/// velocities of this part. Her vertices have the mean distance of those of her mother. Daughters do not feel
-/// each other. If the run of a daughter fails, the daughter ends there, and the runs of the others continue.
+/// velocities of this part. The mean distance between vertices is the same in daughter and mother. Daughters
+/// do not feel each other. If the run of a daughter fails, the runs of the other members continue.
 class FamilyRun {
  public:
   FamilyRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
@@ -93,8 +93,8 @@ class FamilyRun {
   std::vector<std::byte> snapshot() const;
   const DropletRun& ancestor() const { return ancestor_; }
   /// Returns the run of one member at its birth. Returns nullopt if there is no such member, or if it was not
-  /// followed. Only the members from which it descends are run. This function and the next require a run that
-  /// has not been advanced.
+  /// followed. Only members from which this member descends are run. This function and the next require a run
+  /// that has not been advanced.
   std::optional<DropletRun> at_birth(const std::string& path) &&;
   /// Returns one member that has ended; nullopt if there is no such member.
   std::optional<Member> member(const std::string& path) &&;

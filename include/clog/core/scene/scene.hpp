@@ -32,7 +32,8 @@ struct Scene {
   /// Refuses impossible combinations before automatic values are known; check_each() has checked each
   /// parameter alone. @throws Error
   void (*check)(const RunParameters& run);
-  /// Computes the values that follow from other values. Refuses given values that contradict them.
+  /// Computes the values that follow from other values. Refuses given values that contradict the computed
+  /// ones.
   /// @throws Error
   void (*resolve)(RunParameters& run);
   /// Diameter of the sharpest expected bend of the interface [sigma].
@@ -45,7 +46,7 @@ struct Scene {
   ObstacleArray (*walls)(const RunParameters& run);
   /// A droplet at rest. @throws Error if there is no room for it
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
-  /// Displacement along the flow after which the droplet has passed [sigma]; infinite if it never has.
+  /// Displacement along the flow after which the droplet has passed [sigma]; infinite if no droplet can pass.
   /// @param start  place of release of the centre of mass, in the coordinates of the walls [sigma]
   double (*passing_distance)(const RunParameters& run, const Eigen::Array2d& start);
   /// Converts a place from the coordinates of the walls to those of the file of circles, in the first period
@@ -53,12 +54,12 @@ struct Scene {
   Eigen::Array2d (*place_in_file)(const RunParameters& run, const Eigen::Array2d& place) = nullptr;
 };
 
-/// The x at which the path of a droplet begins that was released at `x`, in the coordinates of the file of
-/// circles [sigma]. The void nearest to an entrance may be across the border of the array. In this case the
-/// result is the x of the droplet's periodic image that is nearest to the entrance.
+/// The x at which the path of a droplet released at `x` begins, in the coordinates of the file of circles
+/// [sigma]. The void nearest to an entrance may be across the border of the array. In this case the result is
+/// the x of the droplet's periodic image that is nearest to the entrance.
 double start_of_path(const ObstacleParameters& obstacles, double x);
 
-/// Whether a droplet was released in the nearest void, because an obstacle was at its place on the entrance.
+/// Whether a droplet was released in the nearest void, because an obstacle covers its place on the entrance.
 /// @param x, y  place of the release, in the coordinates of the file of circles [sigma]
 bool is_displaced(const RunParameters& run, double x, double y);
 

@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// Writes plain values one after the other, as they are in memory. Only the same program on a machine of the
-/// same kind can read them.
+/// Writes plain values one after the other, in their form in memory. Only the same program on a machine of
+/// the same kind can read the bytes.
 class ByteWriter {
  public:
   template <class T>
@@ -41,7 +41,8 @@ class ByteWriter {
   }
 };
 
-/// Reads what a ByteWriter wrote, in the same order. @throws std::out_of_range at the end of the bytes
+/// Reads the values that a ByteWriter wrote, in the order of writing. @throws std::out_of_range at the end of
+/// the bytes
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}

@@ -22,7 +22,7 @@ inline std::string shortest(double value) {
   return text;
 }
 
-/// The number rounded to twelve digits, so without the round-off of a calculation or of a conversion between
+/// The number rounded to twelve digits. This removes the round-off of a calculation or a conversion between
 /// units: 1.2 - 0.3 is 0.8999999999999999 and becomes 0.9.
 inline double twelve_digits(double value) {
   if (!std::isfinite(value) || value == std::trunc(value)) return value;

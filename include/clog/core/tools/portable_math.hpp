@@ -8,8 +8,8 @@
 /// glibc have only one version. (std::sqrt, std::hypot and rounding already give equal bits on all
 /// processors.) The functions here are too slow for loops over vertices.
 ///
-/// sin, cos and tan are plain arithmetic. The other functions are instructions of the x87, which a processor
-/// of another manufacturer may round differently in the 64th bit. This almost never affects the 53 bits of a
+/// sin, cos and tan are plain arithmetic. The other functions use instructions of the x87, whose results may
+/// differ in the 64th bit between manufacturers of processors. This almost never affects the 53 bits of a
 /// double. Use these other functions only for values that are rounded or compared afterwards.
 namespace clog::portable {
 

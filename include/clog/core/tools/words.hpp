@@ -10,8 +10,8 @@ namespace clog {
 template <class Enum>
 using Worded = std::pair<Enum, const char*>;
 
-/// The words of an enum in files and messages. It is specialised beside the enum, with a member `all` that
-/// contains every value and its word.
+/// The words of an enum in files and messages. Each enum has a specialisation beside its definition; the
+/// member `all` contains every value and its word.
 template <class Enum>
 struct Words;
 

@@ -15,10 +15,10 @@ struct Stretch {
 };
 
 /// The widest bare stretch of an array along an axis, if it suggests a mistake in the array's length. This is
-/// the case if the stretch is wider than a droplet plus twice the second widest stretch. Otherwise nullopt,
-/// as for a single circle, which may be the unit cell of an array.
-/// @param centre  of a circle along the axis: &Obstacle::x or &Obstacle::y
-/// @param period  of the array along it [sigma]; no circle is wider
+/// the case if the stretch is wider than a droplet plus twice the second widest stretch. Otherwise nullopt.
+/// Also nullopt for a single circle, which may be the unit cell of an array.
+/// @param centre  the coordinate along the axis: &Obstacle::x or &Obstacle::y
+/// @param period  period of the array along the axis [sigma]; no circle is wider
 std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,
                                                 double period);
 

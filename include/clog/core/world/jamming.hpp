@@ -21,8 +21,8 @@ std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 std::optional<double> share_of_saturated(const ObstacleParameters& obstacles);
 
 /// The largest density of a random array that every seed can reach [1/sigma^2]. It is eight standard
-/// deviations below the mean of saturated arrays of this box. In small boxes, where that would be almost
-/// zero, it is the smallest possible density of a saturated array.
+/// deviations below the mean of saturated arrays of this box. In small boxes, where this value would be
+/// almost zero, the result is the smallest possible density of a saturated array.
 /// @param obstacles  of random layout
 double largest_density(const ObstacleParameters& obstacles);
 

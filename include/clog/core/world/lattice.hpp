@@ -22,10 +22,10 @@ struct CommensurateLattice {
   double angle = 0;   ///< t [degrees]
 };
 
-/// Largest deviation of a lattice's tilt from the requested one [degrees].
+/// Largest deviation of a lattice's tilt from the requested tilt [degrees].
 inline constexpr double largest_angle_error = 0.1;
-/// Largest allowed tilt [degrees]. For square and triangular lattices, a larger tilt gives the same lattice
-/// as a smaller one.
+/// Largest allowed tilt [degrees]. For square and triangular lattices, every larger tilt gives the same
+/// lattice as some smaller tilt.
 double largest_tilt(LatticeKind kind);
 
 /// The lattice with the tilt nearest to lattice_angle. Its periods are at most `box` and `length` (0: `box`),
@@ -34,7 +34,7 @@ double largest_tilt(LatticeKind kind);
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// nearest_lattice(); nullopt if its tilt is more than largest_angle_error away from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
-/// A box with a whole-numbered width, larger than the given one, in which there is a fitting_lattice()
+/// A whole-numbered width of the box, larger than the given width, for which there is a fitting_lattice()
 /// [sigma].
 double box_that_fits(const ObstacleParameters& obstacles);
 /// The nearest lattices on both sides of lattice_angle, if there are any.

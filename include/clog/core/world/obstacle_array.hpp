@@ -62,7 +62,7 @@ class ObstacleArray {
   /// posts.
   std::vector<std::uint32_t> posts() const;
   /// Whether a post surrounds this place, alone or together with a wall that it touches. In user-supplied
-  /// files, rows of circles may draw the outline of a post, and the inside of this post is solid. Posts that
+  /// files, circles in a row may form the outline of a post. The inside of such a post is solid. Posts that
   /// are wider than a period surround nothing.
   bool is_within_post(const Eigen::Array2d& place) const;
   /// The two posts with the smallest gap. Periodic images count, except those beyond side walls. The gap is
@@ -85,19 +85,19 @@ class ObstacleArray {
 };
 
 /// The post of each of a few circles. Posts are numbered from 0 in the order in which they first appear.
-/// Unlike ObstacleArray::posts(), this function considers only the given circles. So a post counts as several
-/// posts if only other circles connect the given ones.
+/// Unlike ObstacleArray::posts(), this function considers only the given circles. So circles of one post
+/// count as several posts if only circles that are not given connect them.
 std::vector<int> posts_among(std::span<const Obstacle> circles);
 
 /// A Poisson-disk sample by random sequential addition. Discs are proposed one by one, at uniform places in
 /// the period and with diameters uniform in diameter (1 -+ spread). A disc is accepted if its surface is at
-/// least `gap` away from those of all earlier discs. So in dense mixtures, small discs are more frequent
-/// among the accepted discs than among the proposed discs. With a density, sampling stops at round(density *
-/// area) obstacles. Without a density, it stops when not even a disc of the smallest diameter fits. Such an
-/// array is called saturated: at this jamming limit, discs of diameter + gap cover 0.547 of the plane (Feder,
-/// J. Theor. Biol. 87, 237 (1980)). Voids are tracked on a flat quadtree as in Ebeida et al., Comput. Graph.
-/// Forum 31, 785 (2012).
-/// @throws Error if the density exceeds what fits; resolve() lets only densities pass that every seed reaches
+/// least `gap` away from the surfaces of all earlier discs. So in dense mixtures, small discs are more
+/// frequent among the accepted discs than among the proposed discs. With a density, sampling stops at
+/// round(density * area) obstacles. Without a density, it stops when not even a disc of the smallest diameter
+/// fits. Such an array is called saturated: at this jamming limit, discs of diameter + gap cover 0.547 of the
+/// plane (Feder, J. Theor. Biol. 87, 237 (1980)). Voids are tracked on a flat quadtree as in Ebeida et al.,
+/// Comput. Graph. Forum 31, 785 (2012).
+/// @throws Error if the density cannot be reached; resolve() accepts only densities that every seed reaches
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 
 }  // namespace clog

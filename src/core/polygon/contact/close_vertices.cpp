@@ -48,8 +48,8 @@ class Search {
   }
 
  private:
-  /// list_along() finds pairs that are at most this many vertices apart. Pairs that are farther apart belong
-  /// to groups that are not neighbours; list_far() finds them.
+  /// list_along() finds pairs that are at most this many vertices apart. list_far() finds all other pairs;
+  /// their groups are not neighbours.
   static constexpr int last_along = 2 * group_size - 1;
   static_assert(last_along + group_size <= close_vertices_beyond);
 
@@ -67,9 +67,10 @@ class Search {
 
   bool excluded_are_long() const { return (c_.exclusion - 1) * c_.longest_edge >= c_.arc; }
 
-  /// Returns false only if no pair along the contour is close. Tests all pairs up to 7 vertices apart. Pairs
-  /// that are 9 apart, with a reach longer by one edge, represent pairs that are 8 to 10 apart. Pairs that
-  /// are 13 apart, with a reach longer by two edges, represent pairs that are 11 to 15 apart.
+  /// Returns false only if no pair that list_along() would find is close. Tests all pairs up to 7 vertices
+  /// apart. Pairs that are 9 vertices apart stand for pairs that are 8 to 10 apart; they are tested with a
+  /// reach longer by one edge. Pairs that are 13 apart stand for pairs that are 11 to 15 apart, with a reach
+  /// longer by two edges.
   bool along_may_meet() const {
     constexpr int last_tested = 7, third = 9, fifth = 13;
     if (c_.exclusion > last_tested || excluded_are_long()) return true;
@@ -104,9 +105,9 @@ class Search {
     }
   }
 
-  /// Lists pairs with groups that are not neighbours, by means of bounding circles of the groups. A bounding
-  /// circle is centred between the ends of the group's arc: no point of the arc is farther from there than
-  /// half of the arc's length.
+  /// Lists pairs in groups that are not neighbours. A test of bounding circles excludes most pairs of groups.
+  /// The centre of a bounding circle is midway between the ends of the group's arc, because no point of the
+  /// arc is farther from there than half of the arc's length.
   void list_far() {
     const int num_groups = (c_.n + group_size - 1) / group_size;
     const int stride = num_groups + lanes;

@@ -4,8 +4,8 @@
 
 #include "clog/core/polygon/contact/self_contacts.hpp"
 
-/// Finds the parts of a contour that are near each other. Compiled for several instruction sets, all of which
-/// find the same pairs.
+/// Finds the parts of a contour that are near each other. The code is compiled for several instruction sets;
+/// all of them find the same pairs.
 namespace clog::kernel {
 
 /// A closed contour. The arrays repeat the beginning of the contour in `close_vertices_beyond` entries beyond
@@ -20,8 +20,8 @@ struct CloseSearch {
 };
 inline constexpr int close_vertices_beyond = 24;
 
-/// Finds each pair of vertices within `reach` of each other once. The vertices of a pair must be at least
-/// `exclusion` vertices or at least the distance `arc` apart along the contour.
+/// Finds every pair of vertices that are within `reach` of each other. Each pair is found once. The vertices
+/// of a pair must be at least `exclusion` vertices or at least the distance `arc` apart along the contour.
 /// @param groups  working memory
 void find_close_vertices(const CloseSearch& search, std::vector<double>& groups,
                          std::vector<VertexPair>& pairs);

@@ -77,8 +77,8 @@ void CrossingDepth::add_gradient_of_vector_to_edge(const Eigen::Array2d& factor,
     to.push_back({fraction_ > 0 ? end_ : begin_, factor});
     return;
   }
-  // The nearest point slides along the edge with the vertex, so the vector to it is always normal to the
-  // edge.
+  // The nearest point slides along the edge with the vertex, so the vector from the vertex to this point is
+  // always normal to the edge.
   const Eigen::Array2d normal = turned(tangent_);
   const double along = (factor * tangent_).sum(), across = (factor * normal).sum();
   const double on_end = fraction_ * across - along * (vector_to_edge_ * normal).sum() / length_;

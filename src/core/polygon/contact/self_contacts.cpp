@@ -14,7 +14,7 @@
 namespace clog {
 namespace {
 
-/// Vertices closer than this many ranges along the contour do not repel each other.
+/// Vertices that are closer than this many ranges along the contour do not repel each other.
 constexpr double contour_exclusion = 3;
 
 }  // namespace
@@ -52,8 +52,8 @@ bool SelfContacts::hold(double moved, const Travel& travel) const {
 }
 
 void SelfContacts::rebuild(const DropletState& state, const Travel& travel) {
-  // With the usual skin, no neighbours along a straight contour at rest are listed. A very fast droplet needs
-  // a thicker skin.
+  // The usual skin is so thin that the list contains no neighbours along a straight contour at rest. A very
+  // fast droplet needs a thicker skin.
   const double usual_skin = (exclusion_ * rest_edge_ - range_) / 4;
   rebuild_with_skin(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
 }
@@ -110,7 +110,7 @@ void SelfContacts::rebuild_with_skin(const DropletState& state, double skin) {
   items_.clear();
   if (!reference_.allFinite()) return;  // the droplet has diverged; the run detects this at its next check
 
-  // The closest point of an edge within reach is at most half an edge from one of its ends.
+  // The point of an edge that is closest to a vertex is at most half an edge from one of the edge's ends.
   const double reach = range_ + 2 * skin_;
   const double longest_edge = measure_edges(x, y, n);
   const double end_reach = reach + 0.5 * longest_edge;
@@ -126,7 +126,7 @@ void SelfContacts::rebuild_with_skin(const DropletState& state, double skin) {
   };
   const auto add_edges_of = [&](int vertex, int other) {
     add_if_near({vertex, other});
-    // The edge that ends at `other` is found through its first vertex, if that vertex is near, too.
+    // If the first vertex of the edge that ends at `other` is also near, this edge is listed for that vertex.
     const int before = other > 0 ? other - 1 : n - 1;
     if (!is_near(vertex, before)) add_if_near({vertex, before});
   };

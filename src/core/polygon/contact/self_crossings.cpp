@@ -34,7 +34,7 @@ bool passes_through(const SelfContacts::Pair& pair, const Contour& contour,
   const Eigen::Array2d edge = edge_after - edge_change, way = way_after - way_change;
   const double before = cross_product(edge, way), after = cross_product(edge_after, way_after);
   if ((before > 0) == (after > 0)) return false;
-  // The root of before + linear * t + square * t^2 between 0 and 1, in the form without cancellation.
+  // The root of before + linear * t + square * t^2 between 0 and 1, by a formula without cancellation.
   const double square = cross_product(edge_change, way_change), linear = after - before - square;
   const double root = std::sqrt(std::max(0.0, linear * linear - 4 * square * before));
   const double sum = linear + std::copysign(root, linear);
@@ -57,7 +57,7 @@ double range_of(const SelfContacts& contacts, const SelfContacts::Pair& pair, in
   return are_neighbours(contacts, pair, num_vertices) ? 0 : contacts.range();
 }
 
-/// The edge after `edge` in this direction, 1 or -1, if a vertex can slide on to it. @param bends  whether
+/// The edge next to `edge` in this direction (1 or -1), if a vertex can slide onto it. @param bends  whether
 /// the edges continue beyond corners of more than 90 degrees
 std::optional<int> next_edge(const Contour& contour, Eigen::Index vertex, int edge, int step, bool bends) {
   const int n = contour.size, next = (edge + step + n) % n;
@@ -112,8 +112,9 @@ int SelfCrossings::end_of_edges(const Contour& contour, const SelfCrossing& cros
   return -1;
 }
 
-/// Finds whether and how the interface still crosses itself here. The vertex and the neighbours that have
-/// passed through with it form a run. The edges at both ends of the run cross the crossing's edges.
+/// Finds whether and how the interface still crosses itself at this crossing. The vertex and the neighbours
+/// that have passed through with it form a chain. The edges at both ends of the chain cross the crossing's
+/// edges.
 CrossingPlace SelfCrossings::look_at(const Contour& contour, const SelfCrossing& crossing,
                                      const std::vector<SelfCrossing>& all) {
   const int n = contour.size;
@@ -138,8 +139,8 @@ CrossingPlace SelfCrossings::look_at(const Contour& contour, const SelfCrossing&
           .own = {own_edge(1), own_edge(n - 1)}};
 }
 
-/// Whether the vertex has passed back. If it has not, sets the crossing's edge to the nearest of this edge
-/// and its neighbours.
+/// Whether the vertex has passed back through the interface. If not, sets the crossing's edge to the edge
+/// nearest to the vertex, among the present edge and its neighbours.
 bool SelfCrossings::heals(const Contour& contour, const Drift& drift, SelfCrossing& crossing) {
   const auto vertex = static_cast<int>(crossing.vertex);
   find_chain(contour, crossing, beside, false);
@@ -200,7 +201,7 @@ bool SelfCrossings::follow(const Contour& contour, const Drift& drift, const Sel
       std::erase_if(state.crossings, [&](SelfCrossing& one) { return heals(contour, drift, one); });
   state.num_healed += static_cast<std::int64_t>(num_healed);
   for (const SelfContacts::Pair& pair : passed) state.crossings.push_back({pair.vertex, pair.edge});
-  // Muted contacts are those around the nearest edge, which may have changed.
+  // The muted contacts are those near the crossing's edge, which may have changed.
   rebuild(contour, state.crossings);
   return true;
 }
@@ -222,8 +223,8 @@ double SelfCrossings::find_pushes(const Contour& contour, const SelfContacts& co
   return energy;
 }
 
-/// The crossing that shifts this vertex in the contacts that `crossing` mutes; null if there is none. A
-/// neighbour of the crossed vertex may have passed through nearby edges, too.
+/// The crossing that shifts this vertex in the contacts that `crossing` mutes; null if there is none. The
+/// vertex may be a neighbour of the crossed vertex that has passed through nearby edges, too.
 const CrossingDepth* SelfCrossings::depth_of(int vertex, int crossing, int num_vertices) const {
   const CrossingPlace& muting = places_[crossing];
   if (vertex == muting.vertex) return &depths_[crossing];
@@ -234,8 +235,8 @@ const CrossingDepth* SelfCrossings::depth_of(int vertex, int crossing, int num_v
   return nullptr;
 }
 
-/// Adds the pushes of a muted contact. For this, crossed vertices are at the places that they would have
-/// without the crossing. Returns the contact's energy.
+/// Adds the pushes of a muted contact, computed as if crossed vertices were at the places that they would
+/// have without the crossing. Returns the contact's energy.
 double SelfCrossings::push_off(const Contour& contour, const Muted& muted, double range) {
   const std::array<int, 3> vertices = {muted.pair.vertex, muted.pair.edge,
                                        (muted.pair.edge + 1) % contour.size};

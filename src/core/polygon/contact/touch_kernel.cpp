@@ -37,12 +37,12 @@ HWY_INLINE Vectors operator*(V factor, const Vectors& v) {
   return {hn::Mul(factor, v.x), hn::Mul(factor, v.y)};
 }
 
-/// Half edges, each from a vertex to the middle of its edge, in contact with a circle. NearestOnHalves in
-/// dp_step_circles-inl.hpp computes the points of Half faster.
+/// Half edges in contact with a circle. Each half edge leads from a vertex to the middle of its edge.
+/// NearestOnHalves in dp_step_circles-inl.hpp computes the closest points faster.
 struct Half {
   M touches;
   V length;
-  V to_middle;  ///< fraction of the force that the middle takes
+  V to_middle;  ///< fraction of the force that acts on the middle
   Vectors push;
 
   HWY_INLINE Half(const Vectors& vertex, const Vectors& middle, const Vectors& centre, V reach, V stiffness) {
@@ -70,7 +70,7 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     const auto vertices = [&](int k) { return Vectors{load_at(x + i + k), load_at(y + i + k)}; };
     const Vectors begin = vertices(0), end = vertices(1);
     const Vectors middle = far * vertices(-1) + near * begin + near * end + far * vertices(2);
-    // No point of a half edge is farther from the half's vertex than the length of the half.
+    // No point of a half edge is farther from its vertex than the length of the half edge.
     const V first_way = hn::Sqrt((middle - begin).square()), second_way = hn::Sqrt((middle - end).square());
     const auto may_touch = [&](const Vectors& vertex, V way) {
       const V farthest = hn::Add(reach, way);
@@ -85,8 +85,8 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     hn::StoreMaskBits(D(), any, bits);
     touches.touching |= static_cast<unsigned>(bits[0]) << i;
 
-    // Adds up the forces in the order of the halves. For each half edge, the force on the half's own
-    // vertex comes first.
+    // Adds the forces in the order of the half edges. For each half edge, adds the force on its own vertex
+    // first.
     const auto if_touches = [](const Half& half, V share) {
       return Vectors{hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.x)),
                      hn::IfThenElseZero(half.touches, hn::Mul(share, half.push.y))};
@@ -103,8 +103,8 @@ void touch(const double* x, const double* y, const Circle& circle, double stiffn
     keep(1, own(first) + by_middle(first, near) + by_middle(second, near));
     keep(2, by_middle(first, near) + own(second) + by_middle(second, near));
     keep(3, by_middle(first, far) + by_middle(second, far));
-    // A half edge in contact is wetted over its whole length. The length next to the middle belongs to both
-    // vertices.
+    // A half edge in contact is wetted over its whole length. The part of this length next to the edge's
+    // middle is divided between both vertices.
     const auto wetted = [&](double by_first, double by_second, double* p) {
       hn::Store(hn::Add(hn::IfThenElse(first.touches, hn::Mul(all(by_first), first.length), zero),
                         hn::IfThenElse(second.touches, hn::Mul(all(by_second), second.length), zero)),

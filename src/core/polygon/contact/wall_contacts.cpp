@@ -11,17 +11,17 @@
 namespace clog {
 namespace {
 
-// A droplet moves 0.05 sigma in about 1000 steps, so rebuilding the lists costs almost nothing. A thicker
-// skin makes the list of obstacles that may be nearest to a vertex longer, so this list has a thinner skin.
+// A droplet moves 0.05 sigma in about 1000 steps, so rebuilding the lists costs almost nothing. The list of
+// obstacles that may be nearest to a vertex has a thinner skin, because this list grows with the skin.
 constexpr double touching_skin = 0.05;
 constexpr double nearest_skin = 0.02;
 
 /// Parts of the interface that are closer along the contour than this many films belong to the same layer. At
 /// the tip of a fold, where the interface turns, there is no room for a film.
 constexpr double arc_of_a_fold = 3;
-/// An edge belongs to a higher layer only if it is lower than that layer by at most this fraction of a film.
-/// At the tip of a fold, another part of the interface may move below an edge before the edge has risen. This
-/// edge keeps its layer, so it is not thrown off.
+/// An edge moves to a higher layer only if it is lower than that layer by at most this fraction of a film. At
+/// the tip of a fold, another part of the interface may move below an edge before the edge has risen. The
+/// edge then keeps its layer; otherwise the higher layer would throw it off.
 constexpr double layer_tolerance = 0.25;
 
 }  // namespace
@@ -56,7 +56,7 @@ void WallContacts::rebuild(const DropletState& state, const Travel& travel) {
 void WallContacts::gather_nearby(const DropletState& state) {
   const auto x = state.x();
   const auto y = state.y();
-  // Middles of edges exceed the vertices' bounds by at most an eighth of an edge.
+  // The middles of edges are outside the bounds of the vertices by at most an eighth of an edge.
   double longest2 = 0;
   for (Eigen::Index i = 0, j = x.size() - 1; i < x.size(); j = i++)
     longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
@@ -69,7 +69,8 @@ void WallContacts::gather_nearby(const DropletState& state) {
                                range_ + highest_layer * film_ + skin_ + std::sqrt(longest2) / 8};
   nearby_.clear();
   array_->gather(window, nearby_);
-  // A wedge's flanks touch a vertex first, but its tip may touch an edge between two vertices, like a circle.
+  // A wedge's flank touches a vertex before it touches an edge. But its tip may touch an edge between two
+  // vertices, so the tip is listed as a circle.
   if (keep_ == Keep::touched_by_edge)
     for (const Wedge& wedge : array_->wedges())
       if (!wedge.is_flat()) {
@@ -111,8 +112,8 @@ void WallContacts::rebuild_with_skin(const DropletState& state, double skin) {
   largest_radius_ = nearby_.empty() ? 0 : largest->radius;
 }
 
-/// Lists the edges that a circle may touch until the lists are rebuilt. An obstacle that gets within range
-/// before the next rebuild is within range + skin now.
+/// Lists the edges that a circle may touch before the next rebuild. An obstacle that may get within range by
+/// then is within range + skin now.
 /// @param fine  the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& position, const Eigen::ArrayXd& fine) {
   const int n = static_cast<int>(num_points_);
@@ -156,7 +157,7 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
   const double lowest = circle.radius + range_;  // distance of layer 0 from the centre
   const double far = (lowest + highest_layer * film_ + skin_) * (1 + rounding);
   // If the circle may touch an edge, the edge's middle is closer to the circle's centre than farthest_middle.
-  // The same holds for the parts of the interface between that edge and the circle.
+  // The middles of edges between that edge and the circle are closer than this, too.
   const double farthest_middle = far + longest_edge_;
   nearby_groups_.clear();
   for (int group = 0; group < static_cast<int>(bounds_.size()); ++group)
@@ -182,7 +183,7 @@ void WallContacts::find_layers(const Obstacle& circle, const Eigen::ArrayXd& pos
   }
 }
 
-/// Counts how often the contour crosses the line from the circle's centre to a place on an edge of a group in
+/// Counts how often the contour crosses the line from the circle's centre to `place`, a point of an edge in
 /// nearby_groups_.
 int WallContacts::num_parts_below(const Obstacle& circle, int edge, const Eigen::Array2d& place,
                                   const Eigen::ArrayXd& position) const {
@@ -220,7 +221,7 @@ int WallContacts::num_parts_below(const Obstacle& circle, int edge, const Eigen:
   return crossings;
 }
 
-/// Measures the distance of each vertex from all circles nearby, and from the nearest of them.
+/// Measures the distance of each vertex from all circles nearby, and from the nearest circle.
 void WallContacts::measure_distances(const DropletState& state) {
   const auto num_nearby = static_cast<Eigen::Index>(nearby_.size());
   distances_.resize(state.size(), num_nearby);
@@ -233,9 +234,9 @@ void WallContacts::measure_distances(const DropletState& state) {
   }
 }
 
-/// Lists the obstacles that a vertex may touch, or that may be nearest to it, until the lists are rebuilt. An
-/// obstacle may become the nearest before the next rebuild only if it is now at most 2 skins farther away
-/// than the nearest one.
+/// Lists the obstacles that a vertex may touch, or that may be nearest to it, before the next rebuild. An
+/// obstacle may become the nearest only if it is now at most 2 skins farther away than the present nearest
+/// obstacle.
 void WallContacts::list_by_vertex(const DropletState& state) {
   measure_distances(state);
   candidates_.resize(num_points_);

@@ -77,7 +77,7 @@ void WallTouches::add_vertex(const Contour& contour, int vertex, const WallPlace
   };
   Part& touched = parts_[part(vertex, wall)];
   touched.push += stiffness_ * (range_ - distance) * normal;
-  // If a wedge's tip also touches the vertex's edges, these edges have already counted this length.
+  // If the tip of the wedge touches the vertex's edges, this length has already been counted for these edges.
   const double own = (length(vertex, vertex + 1) + length(vertex, vertex - 1)) / 2;
   touched.wetted = std::max(touched.wetted, own);
 }
@@ -156,7 +156,7 @@ void WallTouches::keep_pushed(const Contour& contour) {
     const Eigen::Array2d normal = is_circle ? Eigen::Array2d(normal_x[k], normal_y[k])
                                             : distance_to(one.wall, obstacles_->wedges(), from_centre).normal;
     // At the end of a contact, the middle of the last edge pulls the next vertex a little towards the wall.
-    // This pull is not counted.
+    // This pull does not count as a push.
     const double push = std::max(0.0, (one.push * normal).sum());
     if (!(push > 0) && !(one.wetted > 0)) continue;
     const WallFoot foot = is_circle ? foot_on_circle(one.wall.radius, normal, gradient[k])

@@ -24,8 +24,8 @@ StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) 
   return stiff_modes(dp, wall_stiffness, circumference, circumference / *dp.vertices);
 }
 
-/// The stiffness of an automatic contact follows from the step, and the stiffness of friction follows from
-/// that of the contact. So only the other modes limit the step.
+/// The automatic stiffness of contact follows from the step, and the stiffness of friction follows from that
+/// of contact. So only the other modes limit the step.
 double largest_step_with_automatic_contact(const DpParameters& dp) {
   const StiffModes modes = stiff_modes_of_circle(dp, 1);
   const double others = modes.sum() - modes.contact - modes.friction;
@@ -109,7 +109,7 @@ void resolve_contact_angles(DpParameters& dp) {
   });
   const bool is_young =
       !dp.wall_tension &&
-      dp.receding_angle == dp.advancing_angle;  // the given angles may differ from Young's by round-off
+      dp.receding_angle == dp.advancing_angle;  // the given angles may differ from Young's angle by round-off
   if (is_young || !dp.receding_angle) dp.receding_angle = young;
   if (is_young || !dp.advancing_angle) dp.advancing_angle = young;
   dp.wall_tension = tension;
@@ -221,8 +221,8 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
                 stiffest_omega_dt, *run.wall_stiffness, 0.99 * largest);
           },
           {"wall-stiffness"});
-  // Obstacles sink too far into a contact that is too soft. So the vertices of an eighth of the circumference
-  // must be able to carry the weight M g with an overlap of less than half the contact range.
+  // If the contact is too soft, obstacles sink too far into the droplet. So an eighth of the vertices must be
+  // able to carry the weight M g with an overlap of less than half the contact range.
   const double softest = units::droplet_mass / (*dp.vertices / 8.0) / (vertex_diameter / 4);
   require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
           *run.wall_stiffness, [&] {

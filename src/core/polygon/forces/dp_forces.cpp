@@ -64,8 +64,8 @@ InterfaceTerms DpForces::interface(double area, double perimeter) const {
   const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
   InterfaceTerms interface;
   interface.line_tension = dp_.line_tension;
-  // The deviations from the mean length add up to zero, so the derivative of the mean has no effect on the
-  // force.
+  // The deviations from the mean length add up to zero. So the derivative of the mean length does not
+  // contribute to the force.
   interface.spring = has_tension ? *dp_.perimeter_stiffness * *dp_.vertices : 0;
   interface.spring_length =
       dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : perimeter / *dp_.vertices;

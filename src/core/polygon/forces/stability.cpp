@@ -13,7 +13,7 @@ namespace {
 
 /// @param longest  longest possible step
 int num_steps(double longest, int steps, double time_step) {
-  // With this tolerance, a step that was chosen as the largest stable step is not split because of round-off.
+  // Without this tolerance, round-off could split a step that was chosen as the largest stable step.
   constexpr double tolerance = 1e-9;
   constexpr double most_by_part = 2;
   const double for_one = time_step / longest - tolerance;

@@ -30,7 +30,7 @@ FireOptions fire_options(const RunParameters& run, double perimeter) {
           .max_move = 0.05 * units::regular_edge_length(*run.dp.vertices)};
 }
 
-/// A small circle in the nearest void, at rest, and its area.
+/// A small circle at rest in the nearest void, and the area of this circle.
 struct Seed {
   DropletState state;
   double area;
@@ -49,18 +49,18 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   return {state_at_rest(regular_polygon(n, area), place, {period.along(), period.across()}), area};
 }
 
-/// The droplet grows with all kinds of contact and with evenly spread vertices, whatever the run's own
-/// interface is. If vertices were bunched, the interface would be too stiff for any step, and obstacles would
-/// slip between the other vertices, which would be far apart. Springs along the interface have no energy, so
-/// they must be weak for the minimiser. Under a large tension they must be strong, because contact then pulls
-/// vertices together at the corners of a squeezed droplet.
+/// The droplet grows with all kinds of contact and with evenly spread vertices, regardless of the interface
+/// parameters of the run. If vertices were bunched, the interface would be too stiff for any step, and
+/// obstacles would slip between the other vertices, which would be far apart. Springs along the interface
+/// must be weak for the minimiser, because they have no energy. With a large tension, however, they must be
+/// strong, because contact then bunches vertices at the corners of a squeezed droplet.
 RunParameters with_growing_interface(RunParameters run) {
   run.dp.inertia = 1;  // the droplet starts at rest
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
   run.dp.wall_contact = WallContact::edge;
   run.dp.self_contact = SelfContact::on;
-  run.dp.receding_angle.reset();  // walls hold the droplet only from the start of the run
+  run.dp.receding_angle.reset();  // walls hold the droplet only after its release
   run.dp.advancing_angle.reset();
   run.dp.gravity = Gravity::vertex;  // without weight, the springs need no reaction on the area
   return run;
@@ -79,7 +79,7 @@ DpForces weightless_forces(const RunParameters& run, const ObstacleArray& obstac
 /// Grows the droplet in stages to its full area.
 /// @param area  the droplet's present area
 void grow(const RunParameters& growing, double area, DpForces& forces, DropletState& state) {
-  constexpr double growth = 1.02;  // growth of the area per stage
+  constexpr double growth = 1.02;  // factor by which the area grows in each stage
   RestForces rest_forces(growing, forces);
   while (area < units::rest_area) {
     area = std::min(units::rest_area, area * growth);
@@ -100,8 +100,8 @@ bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpFor
   RestForces rest_forces(growing, forces);
   bool rests = minimize_fire(rest_forces, state, options).converged ||
                settle(rest_forces, state, longer, damping_rate).converged;
-  // Springs along the interface have no energy, so the remaining sliding may follow a small cycle for ever.
-  // Weaker springs drive this sliding less.
+  // Springs along the interface have no energy, so vertices may slide in a small cycle for ever. Weaker
+  // springs make this motion slower.
   constexpr double weaker = 0.3;
   constexpr int most_weakenings = 4;
   for (int i = 0; i < most_weakenings && !rests; ++i) {
@@ -127,8 +127,7 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   FireOptions longer = options;
   longer.max_iterations = 500000;
   bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
-  // Then the droplet relaxes with its own interface. Springs that carry tension act only from the start of
-  // the run.
+  // Then the droplet relaxes with its own interface. Springs that carry tension act only after the release.
   RunParameters own = run;
   own.dp.inertia = growing.dp.inertia;
   own.dp.receding_angle = growing.dp.receding_angle;

@@ -7,8 +7,8 @@
 namespace clog {
 
 /// Puts a small circle into the void nearest to the centre, and grows it to full size in stages. Each stage
-/// ends with a relaxation. In this way, no obstacle is ever inside the droplet. (A minimisation of the energy
-/// would not remove such an obstacle, because an obstacle that touches no vertex does not contribute to the
+/// ends with a relaxation. In this way, no obstacle is ever inside the droplet. (Minimising the energy would
+/// not push out an obstacle inside the droplet: if it touches no vertex, it does not contribute to the
 /// energy.)
 /// @param run  resolved
 /// @throws Error if there is no room, or the droplet does not relax

@@ -10,12 +10,12 @@
 
 namespace clog {
 
-/// The negative gradient of DpForces' energy. Releases and searches for rest need it thousands of times, so
-/// the fast passes of a step compute it.
+/// The negative gradient of DpForces' energy. Releases and searches for an equilibrium need it thousands of
+/// times, so this class uses the fast passes of a step.
 class RestForces {
  public:
   /// @param run     resolved parameters
-  /// @param forces  of the same run; must outlive this object
+  /// @param forces  energy of the same run; must outlive this object
   RestForces(const RunParameters& run, DpForces& forces);
 
   /// See DpForces.

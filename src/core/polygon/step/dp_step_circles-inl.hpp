@@ -54,7 +54,7 @@ struct RefinedEdgeVectors {
 };
 
 /// The points of half edges that are closest to a circle's centre. Half in touch_kernel.cpp computes these
-/// points more slowly, with the same bits on all processors; dp_step.test.cpp compares them.
+/// points more slowly, but with the same bits on all processors; dp_step.test.cpp compares the two.
 struct NearestOnHalves {
   V fraction;  ///< fraction of the half edge from its beginning to the point
   V dx, dy;    ///< vector from the circle's centre
@@ -91,7 +91,7 @@ struct HalvesAtCircle {
 
 /// Forces of `lanes` edges of a window on their vertices. The force on an edge's middle acts on the four
 /// vertices that determine it. `begin` is the force on the edge's first vertex, `end` the force on its
-/// second, and `far` the force on each of the two vertices beyond them.
+/// second, and `far` the force on each of the two neighbouring vertices.
 struct WindowPushes {
   Pair begin, end, far;
 
@@ -112,8 +112,8 @@ struct WindowPushes {
   }
 };
 
-/// Stores the forces in the arrays of the windows, or adds them to these arrays. @param p  entry of the first
-/// edge in the first array
+/// Stores the forces in the arrays of the windows, or adds the forces to the arrays. @param p  entry of the
+/// first edge in the first array
 template <bool adds>
 HWY_INLINE void keep_pushes(const WindowPushes& push, M listed, double* p, std::ptrdiff_t stride) {
   for (const V v : {push.begin.x, push.end.x, push.far.x, push.begin.y, push.end.y, push.far.y}) {
@@ -143,9 +143,9 @@ HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const
   return touches;
 }
 
-/// One coordinate of the windows' forces on the vertices from p on.
-/// @param p  the forces of edges on their first vertices; the forces on the second vertices are one stride
-/// behind, the forces on the two other vertices two strides behind
+/// One coordinate of the forces that the windows exert on the vertices from p on.
+/// @param p  forces of edges on their first vertices. The forces on the second vertices are one stride
+/// further in memory, the forces on the two other vertices two strides
 HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   const double *end = p + stride, *far = end + stride;
   const V far_before = load(far - lanes), far_here = load(far);
@@ -164,7 +164,7 @@ HWY_INLINE void gather_pushes(int group, const WindowPushArrays& pushes, const C
   }
 }
 
-/// Overwrites the forces on the vertices that windows may push.
+/// Computes the forces on the vertices that windows may push, and overwrites the previous forces.
 void push_off_circles(const WallWindows& given, const Contact& contact, const StepArrays& arrays) {
   // Local copies: the compiler would otherwise assume that every store may change these values.
   const WallWindows windows = given;

@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// Shifts every lane to the next one, and 0 into the first.
+/// Shifts every lane to the next lane, and sets the first lane to 0.
 HWY_INLINE V to_next_lane(V v) {
   alignas(64) constexpr std::int64_t before[8] = {0, 0, 1, 2, 3, 4, 5, 6};
   return hn::IfThenZeroElse(hn::FirstN(D(), 1), hn::TableLookupLanes(v, hn::SetTableIndices(D(), before)));
@@ -79,13 +79,13 @@ class EdgePushes {
   V x_, y_, along_x_, along_y_;
 
   static HWY_INLINE void hand_out(V whole, V end, double* p) {
-    // The sum goes to memory at once: data that was just stored elsewhere could not be loaded immediately.
+    // The sum is stored in one step. A load that overlaps two recent stores would have to wait.
     store(hn::Add(load(p), hn::Add(hn::Sub(whole, end), to_next_lane(end))), p);
     p[lanes] += hn::ExtractLane(end, lanes - 1);
   }
 };
 
-/// The numbers of the lanes, first in ascending, then in descending order; each order is repeated twice.
+/// The numbers of the lanes, first in ascending, then in descending order. Each order occurs twice.
 constexpr auto orders = [] {
   std::array<std::array<std::int64_t, std::size_t{2} * lanes>, 2> order{};
   for (int k = 0; k < 2 * lanes; ++k) {
@@ -98,7 +98,7 @@ constexpr auto orders = [] {
 /// Consecutive vertices, one for each edge of a vector.
 class PairedVertices {
  public:
-  /// @param lane  the first of the item's edges that counts
+  /// @param lane  the first of the item's edges to include
   HWY_INLINE PairedVertices(const SelfContacts::Item& item, int lane, const StepArrays& a)
       : first_(item.vertices + (item.backwards ? edges_per_group - lanes - lane : lane)),
         order_(orders[item.backwards].data()) {
@@ -108,8 +108,8 @@ class PairedVertices {
   }
   HWY_INLINE const Pair& place() const { return place_; }
 
-  /// Adds to the vertices the reaction to the force on the edges. Reads and writes whole aligned vectors. A
-  /// load across two vectors that were just stored would have to wait for the cache.
+  /// Adds the reaction to the force on the edges to the vertices. Reads and writes whole aligned vectors,
+  /// because a load across two vectors that were just stored would have to wait for the cache.
   HWY_INLINE void push_back(const Pair& push, const StepArrays& a) const {
     const int beyond = first_ & (lanes - 1), aligned = first_ - beyond;
     const auto turned = hn::SetTableIndices(D(), order_ + lanes - beyond);
@@ -200,7 +200,7 @@ Held push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, con
   return {.nearest_pair = std::sqrt(nearest2), .taken = taken};
 }
 
-/// Distances from a wedge for a vector of vertices. distance_to() of wedge.hpp computes the same for one
+/// Distances from a wedge for a vector of vertices. distance_to() of wedge.hpp computes this distance for one
 /// vertex.
 class WedgeVectors {
  public:
@@ -216,7 +216,8 @@ class WedgeVectors {
     V dx, dy;         ///< vector from the centre of the tip
     V across;         ///< distance from the axis, with its sign
     V to_flank;       ///< distance from the sharp wedge
-    M is_before_tip;  ///< where the tip is nearer than the flank, so that `to_flank` is not the distance
+    M is_before_tip;  ///< where the tip is nearer than the flank, so that `to_flank` is not the distance from
+                      ///< the wedge
 
     HWY_INLINE V distance2() const { return hn::MulAdd(dx, dx, hn::Mul(dy, dy)); }
   };
@@ -283,7 +284,7 @@ inline V power_minus_four_thirds(V v) {
 
 HWY_INLINE V distance(V squared) { return square_root(hn::Max(squared, all(1e-300))).root; }
 
-/// Lowers distances[i] to the distance of vertex i to a wedge, but not below `shortest`.
+/// Lowers distances[i] to the distance between vertex i and a wedge, but not below `shortest`.
 void shrink_to_wedge_distances(int n, const NearWalls& walls, V shortest, const StepArrays& a,
                                const ContourArray& distances) {
   for (const WedgePlace* place = walls.wedges; place != walls.wedges + walls.num_wedges; ++place) {
@@ -312,7 +313,8 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     while (end != walls.items + walls.num_items && end->group == group) ++end;
     for (int i = group * edges_per_group; i < (group + 1) * edges_per_group; i += lanes) {
       const auto [x, y] = load(a.position, i);
-      // Among equal circles, the nearest has the nearest centre, so one root is enough.
+      // All circles have equal radii, so the nearest circle is the one with the nearest centre, and one root
+      // is enough.
       V nearest = all(1e300);
       for (const WallContacts::Item* circle = begin; circle != end; ++circle) {
         const V dx = hn::Sub(x, all(circle->x)), dy = hn::Sub(y, all(circle->y));
@@ -324,7 +326,7 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     }
   }
   shrink_to_wedge_distances(n, walls, shortest, a, a.rate);
-  // This loop is separate from the search, so that the processor overlaps more of the loop's long chains of
+  // This loop is separate from the search, because the processor can then overlap more of its long chains of
   // operations.
   for_vectors(n, [&](int i, auto) CLOG_INLINE {
     const V distance = load(a.rate + i);

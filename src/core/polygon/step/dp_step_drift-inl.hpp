@@ -1,4 +1,5 @@
-/// Positions and edges (the second pass) and the survey between steps; part of dp_step_kernel.cpp.
+/// The second pass, which computes positions and edges, and the survey between steps; part of
+/// dp_step_kernel.cpp.
 
 #if defined(CLOG_DP_STEP_DRIFT) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_DP_STEP_DRIFT
@@ -73,7 +74,7 @@ Survey survey(int n, const double* walls, const double* self, const StepArrays& 
     sum_vy = hn::Add(sum_vy, keep(vy));
     speed2 = hn::Max(speed2, keep(square(vx, vy)));
     perimeter = hn::Add(perimeter, keep(length));
-    // The zero lengths beyond the last edge are excluded.
+    // The entries beyond the last edge have length 0, and are excluded.
     shortest = hn::Min(shortest, hn::IfThenElse(hn::Gt(keep(all(1)), all(0)), length, all(1e300)));
     if (walls != nullptr) {
       const V dx = hn::Sub(x, load_at(walls + i)), dy = hn::Sub(y, load_at(walls + n + i));

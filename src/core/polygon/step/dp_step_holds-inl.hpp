@@ -17,8 +17,9 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// Adds to each vertex its part of the interface on a circle. Three quarters of the length of each half edge
-/// in contact belong to the vertex at its end, one quarter to the other vertex of the edge.
+/// Adds to each vertex the length of the interface on a circle that belongs to the vertex. Three quarters of
+/// the length of each half edge in contact belong to the vertex at its end, one quarter to the other vertex
+/// of the edge.
 void add_wetted(const WallWindow& window, V span, const StepArrays& a, const ContourArray& wetted) {
   const V reach = all(window.reach), zero = all(0);
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
@@ -51,7 +52,7 @@ HWY_INLINE void fold_ends(const ContourPair& p, int n, int beyond = 2) {
   fold_ends(p.y, n, beyond);
 }
 
-/// Where the vertices of a vector are relative to a circle.
+/// Places of the vertices of a vector relative to a circle.
 struct CircleAtVertices {
   V normal_x, normal_y;
   V inverse;  ///< inverse of the distance from the centre
@@ -66,7 +67,7 @@ struct CircleAtVertices {
 };
 
 /// Adds one circle's normal forces and friction to the forces on a group. Returns the work done on the wall.
-/// WallFriction::follow() does the same for one vertex; dp_step.test.cpp compares the two functions.
+/// WallFriction::follow() is the version for one vertex; dp_step.test.cpp compares the two functions.
 template <bool wets>
 HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
                         const WallGrip& grip, const StepArrays& a) {

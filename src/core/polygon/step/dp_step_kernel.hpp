@@ -9,8 +9,8 @@
 
 /// The step of a deformable polygon as two passes over its vertices, written with vector types and compiled
 /// for several instruction sets. Tests compare it with plain loops (polygon/forces/reference_forces.hpp). A
-/// pass has no branch per vertex, no call and no allocation. Square roots are Newton iterations if the
-/// instruction set has an instruction for the first guess.
+/// pass does not branch at each vertex, and makes no call and no allocation. Square roots are computed by
+/// Newton iterations if the instruction set has an instruction for the first guess.
 namespace clog::kernel {
 
 /// Number of consecutive edges that are tested for contact at once, for any instruction set.
@@ -64,56 +64,56 @@ struct AreaForce {
   double centre_x, centre_y;  ///< centroid of the area [sigma]
   double x, y;                ///< kick, without the reaction to the springs along the interface
 };
-/// Coefficients of one kick. With r the drag rate of a vertex and s = 1/(1 + h1 r),
-///   w = s (v + closing_ratio F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a).
-/// Here w is the velocity after the kick by the force and the vertex's own drag, and v' is the next velocity.
-/// c and a are known only after the sums over all vertices (see Coupling). Until then, q is stored in place
-/// of the velocity. So one kick ends a time step and begins the next.
+/// Coefficients of one kick. With r the drag rate of a vertex and s = 1/(1 + h1 r), w = s (v + closing_ratio
+/// F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a). Here w is the velocity after the kick by the
+/// force and the vertex's own drag, and v' is the next velocity. c and a are known only after the sums over
+/// all vertices (see Coupling). Until then, q is stored in place of the velocity. One kick of this form ends
+/// a time step and begins the next.
 struct KickCoefficients {
-  double closing_ratio;  ///< h1 / half_step: the half step that ends a time step, divided by the half step of
-                         ///< the forces
+  double closing_ratio;  ///< h1 / half_step. Here h1 is the half step that ends a time step, and half_step is
+                         ///< that of the forces
   double h1, h2;         ///< [t0]
   double weight;         ///< (h1 + h2) / half_step, or h1 / half_step if no time step begins
   double half_step;      ///< the half step of the forces [t0]
   bool keeps_kicked;     ///< whether the kick stores w for power()
   /// For an implicit pressure: K_a half_step^2/(M/N_v), with K_a the area stiffness. If a half kick ends a
-  /// step and the next step has another length, the value is that of the next step.
+  /// step and the next step has another length, `softening` is that of the next step.
   double softening = 0;
 };
 /// The terms of a kick. Each combination is compiled separately.
 struct KickTerms {
-  bool elastic;       ///< whether springs carry tension; otherwise they act along the interface
-  bool on_area;       ///< whether weight and mean drag act on the area; the vertices are then coupled
-  bool varying_rate;  ///< whether vertices have different drag rates (StepArrays::rate); otherwise all have
-                      ///< `rate`
-  bool coupled;       ///< whether the force on a vertex depends on the velocities of all
-  bool implicit_pressure;           ///< see Coupling
-  double rate;                      ///< drag rate of all vertices [1/t0]
+  bool elastic;            ///< whether springs carry tension; otherwise they act along the interface
+  bool on_area;            ///< whether weight and mean drag act on the area; the vertices are then coupled
+  bool varying_rate;       ///< whether vertices have different drag rates (StepArrays::rate); otherwise all
+                           ///< vertices have the drag rate `rate`
+  bool coupled;            ///< whether the force on a vertex depends on the velocities of all vertices
+  bool implicit_pressure;  ///< see Coupling
+  double rate;             ///< drag rate of all vertices [1/t0]
   double relative_rate, area_rate;  ///< rates of the drag by the mean velocities of vertices and area [1/t0]
 };
 /// Mean velocities, and their contributions to the velocities of the vertices.
 ///
-/// An implicit pressure is that of the area A + dt^2 d^2A/dt^2, which the droplet would have if its present
-/// acceleration lasted for a time step. The acceleration contains all forces on vertices and area, including
-/// the added pressure, and the drag on the area. It neglects the vertices' own drag and the change of the
-/// area's gradient. For this one mode this is Newmark's method with beta = 1, while all other modes move by
+/// An implicit pressure is the pressure at the area A + dt^2 d^2A/dt^2, which the droplet would have if its
+/// present acceleration lasted for a time step. The acceleration contains all forces on vertices and area,
+/// including the added pressure, and the drag on the area. It neglects the vertices' own drag and the change
+/// of the area's gradient. For the area mode this is Newmark's method with beta = 1; all other modes move by
 /// velocity Verlet. The mode's frequency omega becomes omega/sqrt(1 + (omega dt)^2), so the mode is stable
-/// for every step. If the area is not accelerated, as at rest and in steady fall, nothing is added.
+/// for every step. If the area is not accelerated, as at rest and in steady fall, the added pressure is 0.
 struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< mean velocity of the vertices
   double area_x = 0, area_y = 0;  ///< velocity of the area's centroid
   double c_x = 0, c_y = 0;
   double a_x = 0, a_y = 0;   ///< a of KickCoefficients, with the force on the area; divided by 6 areas
-  double half_pressure = 0;  ///< pressure that the implicit pressure adds, as a kick
+  double half_pressure = 0;  ///< difference between the implicit pressure and the present pressure, as a kick
 };
-/// Powers, each for M/N_v = 1.
+/// Powers in units in which M/N_v = 1.
 struct Power {
   double drag;       ///< dissipation by the vertices' own drag, sum r_i v_i^2
   double spreading;  ///< power of the kicks F_i that spread vertices along the interface, sum F_i v_i
-  double spread_x, spread_y;  ///< sum of these kicks
+  double spread_x, spread_y;  ///< sum of the kicks F_i
 };
-/// A circle and the edges_per_group edges from `first` on; the bits of `edges` mark those that may touch the
-/// circle.
+/// A circle and the edges_per_group edges from `first` on; the bits of `edges` mark the edges that may touch
+/// the circle.
 struct WallWindow {
   double x, y;   ///< circle's centre [sigma]
   double reach;  ///< radius + range, for the layer [sigma]
@@ -121,11 +121,13 @@ struct WallWindow {
   std::uint8_t edges;
   std::uint8_t layer;  ///< see WallContacts
 };
-/// Forces of edges on their vertices, as windows store them. The first three of six arrays contain the x
-/// components: of the forces on an edge's first vertex, on its second vertex, and on each of the two vertices
-/// beyond them. The other three arrays contain the y components. All entries outside the windows are zero.
+/// Forces of edges on their vertices, as windows store them, in six arrays. The first three arrays contain
+/// the x components of three forces: the force on an edge's first vertex, the force on its second vertex, and
+/// the force on each of the two neighbouring vertices. The other three arrays contain the y components. All
+/// entries outside the windows are zero.
 struct WindowPushArrays {
-  double* first;  ///< entry of edge 0; readable from two groups before to two groups behind the windows
+  double* first;  ///< entry of edge 0; entries from two groups before the windows to two groups behind them
+                  ///< are readable
   std::ptrdiff_t stride;
 };
 inline constexpr int num_window_push_arrays = 6;
@@ -167,7 +169,7 @@ struct Held {
   double nearest_pair;  ///< smallest distance of a listed pair of self-contact [sigma]
   double taken;         ///< energy lost to walls, divided by k_t [sigma^2]
 };
-/// Limits of friction, as kicks.
+/// Limits of friction, converted to kicks.
 struct WallGrip {
   double coefficient;            ///< coefficient of friction, for the layer next to the wall
   double coefficient_of_layers;  ///< coefficient of friction, for the layers above
@@ -198,30 +200,31 @@ struct NearWallDrag {
 /// Results of a survey between steps.
 struct Survey {
   double perimeter, shortest;  ///< perimeter, and length of the shortest edge [sigma]
-  /// Speed of the fastest vertex, and its largest value relative to the mean velocity [sqrt(sigma g)].
+  /// Largest speed of a vertex, and largest speed of a vertex relative to the mean velocity [sqrt(sigma g)].
   double speed, relative_speed;
   double moved, moved_relative;  ///< largest displacement of a vertex from the earlier positions, see
                                  ///< StepKernel::survey [sigma]
 };
 
-/// One instruction set's versions of the passes.
+/// The passes, compiled for one instruction set.
 struct StepKernel {
   /// Computes the edges, and sums over them.
   Sums (*measure)(int n, const StepArrays& arrays);
-  /// @param walls, self  earlier positions of the vertices, all x then all y, `self` relative to their mean;
-  /// may be null
+  /// @param walls, self  earlier positions of the vertices, all x then all y; the positions in `self` are
+  /// relative to their mean. Either may be null
   Survey (*survey)(int n, const double* walls, const double* self, const StepArrays& arrays);
   /// Computes the gap between every edge of every item and the contact range of the item's circle:
   /// edges_per_group gaps for each item, negative in contact [sigma]. Returns the smallest gap, or 0 if all
   /// gaps are positive.
   double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
                         const StepArrays& arrays, double* gaps);
-  /// The edges of one item that have a gap of at most `way`, as bits.
+  /// The edges of one item with a gap of at most `way`, as bits.
   std::uint8_t (*edges_within)(const double* gaps, double way);
-  /// Computes the gap of the closest pair of every item. Returns the same as circle_gaps().
+  /// Computes the gap of the closest pair of every item. Returns the smallest gap, or 0 if all gaps are
+  /// positive.
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
-  /// clear_pushes() sets the pushes on all vertices to zero. push() finds the pushes of circles, on the
+  /// clear_pushes() sets the pushes on all vertices to zero. push() computes the pushes of circles on the
   /// groups of vertices listed in `walls`, and the pushes of the droplet on itself. It returns the smallest
   /// distance of a listed pair [sigma].
   void (*clear_pushes)(int n, const StepArrays& arrays);
@@ -232,11 +235,12 @@ struct StepKernel {
                         const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                         const StepArrays& arrays);
   /// Adds the forces of wedges on vertices that are nearer to a wedge's surface than `range` [sigma]. Edges
-  /// are not tested: an edge touches the tip of a wedge before its flank, and the tip is listed as a circle.
+  /// need no test, because an edge touches the tip of a wedge before its flank, and the tip is listed as a
+  /// circle.
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);
-  /// Computes rate = far_rate (relative + near_wall (sigma/d)^exponent), with d a vertex's distance to the
-  /// nearest wall, and the coefficients of a kick that follow from the rate.
+  /// Computes rate = far_rate (relative + near_wall (sigma/d)^exponent), where d is a vertex's distance from
+  /// the nearest wall. Also computes the coefficients of a kick that follow from the rate.
   void (*near_wall_rates)(int n, const NearWalls& walls, const NearWallDrag& drag,
                           const KickCoefficients& coefficients, const StepArrays& arrays);
   /// First pass: forces and velocities.
@@ -247,13 +251,14 @@ struct StepKernel {
   Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
                  const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
   /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges of the new positions. The sums
-  /// include the perimeter only for elastic droplets, and moments only if forces act on the area.
+  /// include the perimeter only if springs carry tension (`elastic`), and moments only if forces act on the
+  /// area.
   Sums (*drift)(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
                 double dt, const StepArrays& arrays);
 };
 
-/// The kernel for these terms. Its instruction set is the widest of this processor, or the one set by
-/// use_instruction_set().
+/// The kernel for these terms. Its instruction set is the widest of this processor, or the set that
+/// use_instruction_set() has selected.
 StepKernel step_kernel(const KickTerms& terms);
 
 }  // namespace clog::kernel

@@ -1,4 +1,4 @@
-/// Forces and velocities, the first pass; part of dp_step_kernel.cpp.
+/// The first pass, which computes forces and velocities; part of dp_step_kernel.cpp.
 
 #if defined(CLOG_DP_STEP_KICK) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_DP_STEP_KICK
@@ -28,17 +28,16 @@ struct KickSums {
   double ng_x = 0, ng_y = 0;  ///< sum of G n
 };
 
-/// Computes the coupled drag and the force on the area. The velocities after the kick are
-///   v_i = w_i + s_i (e V - G_i^T (b V_a - R)),  V = mean v_i,  V_a = sum G_i v_i.
-/// Here s_i = 1/(1 + h r_i), and w_i is the velocity after the kick by the force on the vertex and by its own
-/// drag. e and b are half a step times the relative rate and the area rate. R is the kick by the force on the
-/// area. These are four linear equations for V and V_a; V is eliminated. The drag is implicit, because the
-/// part that acts on the area is stiff for an elongated droplet: b sum |G_i|^2 grows with the square of the
-/// droplet's length and perimeter. An implicit pressure adds H n_i to the kick, where n_i is the chord turned
-/// outwards:
-///   H = -q/(1 + q sum n_j.n_j) (sum n_j.F_j + sum G_j n_j.(R - d V_a)).
-/// Here q is the softening, and d is half a step times the area rate. R - d V_a is the kick by the force on
-/// the area and by the area's drag. The last factor is the acceleration of the area.
+/// Computes the coupled drag and the force on the area. The velocities after the kick are v_i = w_i + s_i (e
+/// V - G_i^T (b V_a - R)),  V = mean v_i,  V_a = sum G_i v_i. Here s_i = 1/(1 + h r_i), and w_i is the
+/// velocity after the kick by the force on the vertex and by its own drag. e and b are half a step times the
+/// relative rate and the area rate. R is the kick by the force on the area. These are four linear equations
+/// for V and V_a; the function eliminates V. The drag is implicit, because the drag on the area is stiff for
+/// an elongated droplet: b sum |G_i|^2 grows with the square of the droplet's length and perimeter. An
+/// implicit pressure adds H n_i to the kick, where n_i is the chord turned outwards: H = -q/(1 + q sum
+/// n_j.n_j) (sum n_j.F_j + sum G_j n_j.(R - d V_a)). Here q is the softening, and d is half a step times the
+/// area rate. R - d V_a is the kick by the force on the area and by the area's drag. The last factor is the
+/// acceleration of the area.
 template <bool implicit_pressure>
 HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force, const KickCoefficients& k,
                            const KickSums& sums) {
@@ -99,7 +98,7 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
   return result;
 }
 
-/// Kick of a vertex by the springs along the interface, as a multiple of the chord between its neighbours.
+/// Kick of a vertex by the springs along the interface, divided by the chord between the vertex's neighbours.
 HWY_INLINE V spread_along_chord(V spreading, V length, V length_before, V tx, V tx_before, V ty,
                                 V ty_before) {
   const V unevenness = hn::Div(hn::Sub(length, length_before), hn::Add(length, length_before));
@@ -112,8 +111,8 @@ struct Corner {
   V length, tx, ty, length_before, tx_before, ty_before;
   V ex, ey, ex_before, ey_before;
 
-  /// The order matters, because the compiler may fuse a product with the next sum, which changes the last
-  /// bits.
+  /// The place of these products matters, because the compiler may fuse a product with the next sum, which
+  /// changes the last bits.
   HWY_INLINE void multiply() {
     ex = hn::Mul(length, tx);
     ey = hn::Mul(length, ty);
@@ -132,8 +131,8 @@ struct CentroidGradient {
   V xx, xy, yx, yy;
 };
 
-/// Computes G. A vertex moves the area's centroid through the triangle of the vertex and its neighbours, so G
-/// = m n^T + k I. Here m is the sum of the three corners relative to the centroid, n the chord turned
+/// Computes G. A displacement of the vertex changes only the triangle of the vertex and its two neighbours,
+/// so G = m n^T + k I. Here m is the sum of the three corners relative to the centroid, n the chord turned
 /// outwards, and k twice the area of the triangle.
 /// @param centre  three times the centroid
 template <class Keep>
@@ -262,7 +261,7 @@ HWY_INLINE Pair kick_force(const Corner& c, const Pair& chord, const Pair& push,
 template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool implicit_pressure>
 Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays) {
-  const StepArrays a = arrays;  // a copy, which stores cannot change
+  const StepArrays a = arrays;  // a local copy: the compiler knows that stores do not change it
   const InterfaceVectors along{all(interface.line_tension), all(interface.spring), all(interface.spreading),
                                all(interface.half_pressure), all(interface.vertex_weight)};
   const Pair centre{all(3 * force.centre_x), all(3 * force.centre_y)};
@@ -285,10 +284,10 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
     corner.ty_before = shifted_back<1>(a.tangent.y + i, last.ty, corner.ty);
     last = corner;
     corner.multiply();
-    // The chord between the neighbours. Turned outwards it is (y, -x).
+    // The chord between the vertex's neighbours; (y, -x) is the chord turned outwards.
     const Pair chord{hn::Add(corner.ex, corner.ex_before), hn::Add(corner.ey, corner.ey_before)};
     const auto [fx, fy] = kick_force<elastic, on_area>(corner, chord, load(a.push, i), along, total, keep);
-    // If s is the same for all vertices, it is applied at the end.
+    // If s is the same for all vertices, the sums are multiplied by s at the end.
     const Pair before = load(a.velocity, i);
     const Pair w{hn::MulAdd(closing_ratio, fx, before.x), hn::MulAdd(closing_ratio, fy, before.y)};
     V s = same_s, kept = same_kept;
@@ -316,8 +315,8 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
                                    total.template total<implicit_pressure>(n, force, one_s));
 }
 
-/// Calls make() with the terms of a kick as compile-time constants: elastic, coupled, on_area,
-/// varying_rate, implicit_pressure. Only constant rates occur together with implicit_pressure.
+/// Calls make() with the terms of a kick as compile-time constants: elastic, coupled, on_area, varying_rate,
+/// implicit_pressure. With implicit_pressure, rates are always constant.
 template <class Make>
 auto version(const KickTerms& terms, Make make) {
   constexpr std::true_type yes;

@@ -1,4 +1,5 @@
-/// Vectors of a contour, for the instruction set that is being compiled; part of dp_step_kernel.cpp.
+/// Operations on vectors of a contour, for the instruction set that is being compiled; part of
+/// dp_step_kernel.cpp.
 
 #if defined(CLOG_DP_STEP_VECTORS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_DP_STEP_VECTORS
@@ -46,7 +47,7 @@ HWY_INLINE void store(Pair v, const ContourPair& p, std::ptrdiff_t i) {
 
 HWY_INLINE double sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
-/// The sums over the lanes of four vectors, in the time of two such sums.
+/// The sums over the lanes of four vectors. This takes only as long as two separate sums.
 HWY_INLINE std::array<double, 4> sums(V a, V b, V c, V d) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
   const V ab = hn::Add(hn::InterleaveLower(D(), a, b), hn::InterleaveUpper(D(), a, b));
@@ -66,7 +67,7 @@ HWY_INLINE std::array<double, 4> sums(V a, V b, V c, V d) {
 }
 
 /// The vector that begins `num` entries before p. `before` and `here` are the vectors at p - lanes and p.
-/// With these vectors, two cache lines need not be read again.
+/// This function uses them, so that two cache lines need not be read again.
 template <int num>
 HWY_INLINE V shifted_back([[maybe_unused]] const double* p, [[maybe_unused]] V before,
                           [[maybe_unused]] V here) {
@@ -79,7 +80,7 @@ HWY_INLINE V shifted_back([[maybe_unused]] const double* p, [[maybe_unused]] V b
 #endif
 }
 
-/// Moves every lane to the lane before it, and the first lane of `next` to the last lane.
+/// Moves every lane to the preceding lane, and the first lane of `next` to the last lane.
 HWY_INLINE V shifted_forward([[maybe_unused]] V here, V next) {
 #if HWY_TARGET == HWY_AVX3
   const __m512i joined = _mm512_alignr_epi64(_mm512_castpd_si512(next.raw), _mm512_castpd_si512(here.raw), 1);
@@ -94,7 +95,7 @@ HWY_INLINE V shifted_forward([[maybe_unused]] V here, V next) {
 #endif
 }
 
-/// sqrt(v) and 1/sqrt(v); the last bit or two may differ.
+/// sqrt(v) and 1/sqrt(v); the last bit or two may be wrong.
 struct Root {
   V root, inverse;
 };
@@ -113,7 +114,8 @@ HWY_INLINE Root square_root(V v) {
 #endif
 }
 
-/// 1/v; the last bit or two may differ. A division of eight numbers would occupy its unit for 16 cycles.
+/// 1/v; the last bit or two may be wrong. A division of eight numbers would keep the divider busy for 16
+/// cycles.
 HWY_INLINE V reciprocal(V v) {
 #if HWY_TARGET == HWY_AVX3
   // The first guess has 14 bits. 1/(1 - error) = (1 + error) (1 + error^2) (1 + error^4) ... corrects it.
@@ -126,11 +128,11 @@ HWY_INLINE V reciprocal(V v) {
 #endif
 }
 
-/// Rounds towards zero, for numbers that fit an integer.
+/// Rounds towards zero. The numbers must fit into integers.
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #if HWY_TARGET == HWY_AVX3
   return hn::Vec<hn::RebindToSigned<D>>{
-      _mm512_cvttpd_epi64(v.raw)};  // Highway's version also handles all other numbers
+      _mm512_cvttpd_epi64(v.raw)};  // Highway's version also handles numbers that do not fit
 #else
   return hn::ConvertTo(hn::RebindToSigned<D>(), v);
 #endif

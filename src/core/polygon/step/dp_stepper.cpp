@@ -29,8 +29,8 @@ int steps_between_surveys(double time_step) {
   return steps;
 }
 
-/// An implicit pressure feeds energy into a swinging droplet. It is allowed only if the drag on the relative
-/// motion of vertices damps this energy (docs/notes/2026-11-26-time-step.md).
+/// An implicit pressure adds energy to the oscillations of a droplet. It is allowed only if the drag on the
+/// relative motion of vertices dissipates this energy (docs/notes/2026-11-26-time-step.md).
 Pressure most_pressure(const RunParameters& run) {
   constexpr double most_steps = 32;
   const bool is_damped =
@@ -67,7 +67,8 @@ std::int64_t DpStepper::move(DropletState& state, int num_steps, Droplet::Work* 
   load(state);
   for (int done = 0; done < num_steps; done += steps_per_survey_) {
     const kernel::Survey now = survey();
-    // The contact lists of a burst droplet would take all memory. The run detects this at its next check.
+    // The contact lists of a burst droplet would take all memory. The run detects the burst at its next
+    // check.
     if (!(now.perimeter < burst_perimeter)) break;
     const int steps = std::min(steps_per_survey_, num_steps - done);
     prepare_contacts(state, now, steps * run_.time_step.value(), work);
@@ -84,11 +85,11 @@ std::int64_t DpStepper::move(DropletState& state, int num_steps, Droplet::Work* 
   return num_taken;
 }
 
-/// The number of parts into which a step is split if vertices may move as far as `way` against each other in
+/// The number of parts into which a step is split if vertices may move by `way` relative to each other in
 /// this step. Otherwise a vertex that moves farther than the range of self-contact in one step would pass
 /// through other parts of the interface before they push it.
 int DpStepper::parts_of_fast_step(double way) const {
-  constexpr double farthest = 0.25;  // in units of the range
+  constexpr double farthest = 0.25;  // in units of the range of self-contact
   constexpr double most_parts = 16;
   const double parts = std::ceil(way / (farthest * forces_->self_contacts().range()));
   return static_cast<int>(std::clamp(parts, 1.0, most_parts));
@@ -121,8 +122,8 @@ kernel::Survey DpStepper::survey() const {
                         memory_.arrays());
 }
 
-/// Rebuilds the contact lists if they would become invalid within this time, and selects from them the
-/// possible contacts.
+/// Rebuilds the contact lists if they would become invalid within this time. Then selects the possible
+/// contacts from the lists.
 void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now, double time,
                                  Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
@@ -136,8 +137,8 @@ void DpStepper::prepare_contacts(DropletState& state, const kernel::Survey& now,
   rates_.fastest = now.speed;
   fastest_relative_ = now.relative_speed;
   kernel_.clear_pushes(n_, a);  // the new lists may contain other groups than the old ones
-  // A contact accelerates its vertices. For a few steps, this adds up to half of the contact's depth to their
-  // motion in each step. `travel` does not include this distance.
+  // A contact accelerates its vertices. For a few steps, vertices may therefore move farther by up to half of
+  // the contact's depth in each step. `travel` does not include this distance.
   constexpr double thrown = 4;
   const double unforeseen =
       0.1 * forces_->vertex_diameter() +
@@ -159,8 +160,8 @@ void DpStepper::keep_near_contacts() {
   near_.contacts.mute(crossings_.muted(), n_);
 }
 
-/// The last half kick is still pending on return: positions are those at the end of the steps, and velocities
-/// those of half a step earlier.
+/// On return, the last half kick is still pending: the positions belong to the end of the steps, the
+/// velocities to a time half a step earlier.
 void DpStepper::advance(DropletState& state, const Steps& steps, Droplet::Work* work) {
   assert(forces_->has_contact_lists());
   assert(run_.drag.near_wall == 0 || steps.pressure == Pressure::present);
@@ -168,7 +169,7 @@ void DpStepper::advance(DropletState& state, const Steps& steps, Droplet::Work* 
   for (int step = 0; step < steps.num; ++step) kick_and_drift(state, 0.5 * steps.length, steps.length, work);
 }
 
-/// Makes the last half kick, and copies the droplet back.
+/// Makes the last half kick, and copies positions and velocities back to the droplet.
 void DpStepper::finish(DropletState& state, Droplet::Work* work) {
   if (open_.length != 0) kick_and_drift(state, 0.5 * open_.length, 0, work);
   memory_.store(memory_.arrays().position, state.position);
@@ -176,8 +177,8 @@ void DpStepper::finish(DropletState& state, Droplet::Work* work) {
   near_.hold.hand_back(state);
 }
 
-/// Evaluates the forces once. Then makes the half kick that ends a step and the one that begins the next
-/// step, and drifts to the next evaluation. Without a drift, makes only the half kick that ends a step.
+/// Evaluates the forces once. Then makes the half kick that ends a step and the half kick that begins the
+/// next step, and drifts to the next evaluation. Without a drift, makes only the half kick that ends a step.
 void DpStepper::kick_and_drift(DropletState& state, double half_step, double drift_time,
                                Droplet::Work* work) {
   kernel::StepArrays& a = memory_.arrays();
@@ -235,11 +236,13 @@ Contour DpStepper::contour() const {
   return {n_, memory_.arrays().position.x.first, memory_.arrays().position.y.first};
 }
 
-/// Finds the vertices that passed through edges in the last drift. Returns whether muted contacts changed.
+/// Finds the vertices that passed through edges in the last drift. Returns whether the muted contacts have
+/// changed.
 bool DpStepper::follow_crossings(DropletState& state, double nearest_pair) {
-  // When a vertex has just passed through an edge, its distance from the edge is at most the distance that
-  // the two moved. Since the last survey, vertices may have become faster. Neighbours along the contour are
-  // not listed; they pass through each other's edges in folds that close fast.
+  // After a vertex has just passed through an edge, its distance from the edge is at most the distance that
+  // both have moved in the drift. Vertices may have become faster since the last survey; the factor `faster`
+  // allows for this. Neighbours along the contour are not in the lists, but they pass through each other's
+  // edges only in folds that close fast.
   constexpr double faster = 3, fast = 0.3;
   const double way = 2 * fastest_relative_ * open_.length;
   const bool may_have_passed = faster * way >= nearest_pair || way >= fast * forces_->self_contacts().range();
@@ -326,8 +329,8 @@ void DpStepper::add_wetting(DropletState& state, double impulse, Droplet::Work* 
   }
 }
 
-/// Where the forces of walls would exceed their limits, lets the interface slip along these walls. There the
-/// limiting force acts on the vertices.
+/// Lets the interface slip along walls whose forces would exceed their limits. The vertices then feel the
+/// limiting force.
 void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::Work* work) {
   const kernel::StepArrays& a = memory_.arrays();
   const std::vector<WallTouch>& touches = friction_.touches.find({n_, a.position.x.first, a.position.y.first},
@@ -335,7 +338,8 @@ void DpStepper::hold_by_friction(DropletState& state, double impulse, Droplet::W
   const WallYield yield = forces_->friction().follow(state, touches, Purpose::motion,
                                                      friction_.touches.known_anchors(), &friction_.force);
   if (work != nullptr) work->dissipated += yield.dissipated;
-  for (const WallAnchor& anchor : state.anchors) {  // if a vertex has two anchors, the first adds both forces
+  for (const WallAnchor& anchor : state.anchors) {  // `force` contains the sum over all anchors of a vertex,
+                                                    // so only the first anchor adds it
     const Eigen::Index x = anchor.holder, y = n_ + x;
     a.push.x[x] += impulse * std::exchange(friction_.force[x], 0.0);
     a.push.y[x] += impulse * std::exchange(friction_.force[y], 0.0);

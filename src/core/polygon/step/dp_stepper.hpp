@@ -17,20 +17,22 @@
 
 namespace clog {
 
-/// A survey finds contacts, speeds and stability. There is at least one survey in this number of steps.
+/// A survey finds contacts, speeds and stability. A stepper makes at least one survey in this number of
+/// steps.
 inline constexpr int most_steps_per_survey = 32;
-/// The rates of the near-wall drag are kept for at most this number of steps. In these steps, no vertex may
-/// move farther than this fraction of the near-wall cutoff
+/// The rates of the near-wall drag are kept for at most this number of steps. During these steps, no vertex
+/// may move farther than this fraction of the near-wall cutoff
 /// (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
 inline constexpr double most_steps_per_rate = 4, farthest_move_per_rate = 0.2;
 
-/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls, the motion that follows
-/// depends only on the DropletState.
+/// Moves a polygon by whole time steps with the vectorised kernel. The motion in a call depends only on the
+/// DropletState at its beginning.
 class DpStepper {
  public:
   /// @param run  resolved parameters
   /// @param obstacles  must outlive this object
-  /// @param forces  of the same run, whose contact lists are rebuilt when needed; must outlive this object
+  /// @param forces  forces of the same run; their contact lists are rebuilt when needed; must outlive this
+  /// object
   DpStepper(const RunParameters& run, const ObstacleArray& obstacles, DpForces& forces);
 
   /// Rebuilds the contact lists of a droplet.
@@ -39,7 +41,7 @@ class DpStepper {
   /// and shorter steps. It stops if the droplet bursts. Returns the number of steps taken.
   /// @param work  if not null, the work of drag and springs is added to it
   std::int64_t move(DropletState& state, int num_steps, Droplet::Work* work);
-  /// Moves a droplet by the given steps. They may have other lengths than the run's steps, and may be
+  /// Moves a droplet by the given steps. These may have other lengths than the run's steps, and may be
   /// unstable. Possible contacts are surveyed before each entry of `all`. With near-wall drag, the pressure
   /// must not be implicit.
   void move(DropletState& state, std::span<const Steps> all, Droplet::Work* work);
@@ -49,9 +51,9 @@ class DpStepper {
   struct Near {
     NearContacts contacts{};
     double largest_wall_gap = 0,
-           largest_self_gap = 0;               // distances from contact up to which `contacts` has entries
-    WallPlan plan;                             // used if holds_circles_ is false
-    WallHold hold;                             // used if holds_circles_ is true
+           largest_self_gap = 0;  // largest gaps of walls and of pairs up to which `contacts` has entries
+    WallPlan plan;                // used if holds_circles_ is false
+    WallHold hold;                // used if holds_circles_ is true
     std::vector<kernel::WedgePlace> wedges{};  // wedges in the droplet's frame
   };
   /// Friction on vertices; used if holds_circles_ is false.
@@ -65,7 +67,7 @@ class DpStepper {
     int steps_left = 0;  // number of steps for which the present rates may still be used
     double h1 = 0, h2 = 0;
   };
-  /// The step with a pending last half kick.
+  /// The last step, if its second half kick is still pending.
   struct OpenStep {
     double length = 0;  // 0 if no half kick is pending
     Pressure pressure = Pressure::present;

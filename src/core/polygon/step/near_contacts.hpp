@@ -19,7 +19,7 @@ class NearContacts {
   void keep(const kernel::StepKernel& kernel, const DpForces& forces, double largest_wall_gap,
             double largest_self_gap);
 
-  /// Removes these contacts until the next keep(). @param num_vertices  number of the droplet's vertices
+  /// Removes the given contacts until the next keep(). @param num_vertices  number of the droplet's vertices
   void mute(std::span<const SelfCrossings::Muted> contacts, int num_vertices);
 
   const std::vector<WallContacts::Item>& walls() const { return walls_; }

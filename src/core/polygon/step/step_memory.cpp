@@ -8,7 +8,7 @@ namespace clog {
 
 StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
   assert(n_ >= kernel::edges_per_group);
-  // Arrays begin on cache lines, with room for an entry before and a group after each.
+  // Arrays begin on cache lines. There is room for an entry before each array, and for a group after it.
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;
   memory_ = aligned_zeros(sizeof arrays_ / sizeof(kernel::ContourArray) * static_cast<std::size_t>(stride));

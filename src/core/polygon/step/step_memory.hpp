@@ -13,7 +13,8 @@ class StepMemory {
   explicit StepMemory(int num_vertices);
   const kernel::StepArrays& arrays() const { return arrays_; }
   kernel::StepArrays& arrays() { return arrays_; }
-  /// Copies vectors of the vertices, all x then all y, into arrays, and repeats the contour beyond its ends.
+  /// Copies one vector for each vertex (all x, then all y) into arrays, and repeats the contour beyond its
+  /// ends.
   void load(const Eigen::ArrayXd& from, const kernel::ContourPair& to) const;
   void store(const kernel::ContourPair& from, Eigen::ArrayXd& to) const;
 

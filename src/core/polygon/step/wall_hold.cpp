@@ -10,7 +10,7 @@
 namespace clog {
 namespace {
 
-// The step also reads groups before and after the contour, and their neighbours.
+// The step also reads the groups just before and after the contour, and the groups next to these.
 constexpr int before = 2, behind = 2;
 
 }  // namespace
@@ -58,7 +58,7 @@ void WallHold::add_groups(kernel::HoldingCircle& circle) {
     circle.wraps |= (window.first == 0 && (window.edges & 1) != 0) || last + 2 >= num_vertices_;
   }
   // The arrays of the step repeat the contour beyond both ends. Forces on repeated vertices are added to the
-  // original vertices at the other end, so the groups at both ends are pushed, too.
+  // original vertices at the other end, so the groups at both ends count as pushed.
   if (circle.wraps)
     is_pushed_.front() = is_pushed_[1] = is_pushed_[static_cast<std::size_t>(num_groups_)] =
         is_pushed_.back() = 1;
@@ -87,8 +87,8 @@ void WallHold::clear_pushes() {
             kernel::edges_per_group, 0.0);
 }
 
-/// The memory consists of arrays of equal length, each for the whole contour. The first three are for all
-/// circles together; the arrays of each circle follow.
+/// The memory consists of arrays of equal length, each for the whole contour. The first three arrays are for
+/// all circles together; the arrays of each circle follow.
 void WallHold::arrange_memory() {
   const std::size_t stride =
       (static_cast<std::size_t>(num_groups_) + before + behind) * kernel::edges_per_group;

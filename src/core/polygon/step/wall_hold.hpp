@@ -19,16 +19,16 @@ class WallHold {
   /// @param range  distance from a circle's surface at which contact begins [sigma]
   WallHold(int num_vertices, double range);
 
-  /// Takes the droplet's anchors. Returns half the sum of the squared slips of the anchors that none of these
-  /// circles can hold [sigma^2].
+  /// Moves the droplet's anchors into this object. Anchors that are on none of the circles `near` are lost.
+  /// Returns half the sum of the squared slips of the lost anchors [sigma^2].
   /// @param near  possible contacts until the next make(), see list_windows()
   double make(const std::vector<WallContacts::Item>& near, DropletState& droplet);
-  /// Copies the anchors into the droplet, if this object has any: forget() discards them, and make() takes
-  /// new ones.
+  /// Copies the anchors into the droplet, if this object has anchors. It has none after forget() and before
+  /// the first make().
   void hand_back(DropletState& droplet) const;
-  /// Discards the anchors. The next make() takes those of its droplet.
+  /// Discards the anchors. The next make() takes anchors from its droplet.
   void forget() { has_anchors_ = false; }
-  /// Valid until the next make(). A step changes the anchors in the result.
+  /// The result is valid until the next make(). A step changes the anchors in it.
   const kernel::HoldingCircles& circles() const { return circles_; }
 
  private:
@@ -38,14 +38,14 @@ class WallHold {
   struct Memory {
     hwy::AlignedFreeUniquePtr<double[]> numbers;
     std::size_t capacity = 0;
-    /// Zeroes the first `num_zeroed` numbers, or all if the memory must grow.
+    /// Zeroes the first `num_zeroed` numbers, or all numbers if the memory must grow.
     void make_room(std::size_t needed, std::size_t num_zeroed);
   };
   Memory memory_;   // pushes of circles; zero except where windows_ have stored a push
-  Memory anchors_;  // one entry for each vertex of groups_, and each circle
+  Memory anchors_;  // one entry for each vertex of groups_
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;
-  std::vector<int> groups_;  // groups of vertices, circle after circle
+  std::vector<int> groups_;  // groups of vertices that each circle may push, circle after circle
   std::vector<std::uint8_t> holds_, is_pushed_;
   kernel::HoldingCircles circles_{};
 

@@ -15,7 +15,7 @@ constexpr int num_arrays = kernel::num_window_push_arrays;
 
 WallPlan::WallPlan(int num_vertices)
     : num_groups_((num_vertices + kernel::edges_per_group - 1) / kernel::edges_per_group) {
-  // The step also reads groups before and after the contour, and their neighbours.
+  // The step also reads the groups just before and after the contour, and the groups next to these.
   constexpr int before = 2, behind = 2;
   windows_.pushes.stride = std::ptrdiff_t{before + num_groups_ + behind} * kernel::edges_per_group;
   memory_ = aligned_zeros(num_arrays * static_cast<std::size_t>(windows_.pushes.stride));

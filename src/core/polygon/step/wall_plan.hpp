@@ -10,14 +10,14 @@
 namespace clog {
 
 /// Repulsion of a contour by circles until the next make(). Each window (see list_windows()) stores the
-/// forces of its edges on their vertices. Then the forces on each vertex are added up once. An edge that may
-/// touch two circles is in two windows; the second window adds its forces to those of the first.
+/// forces of its edges on their vertices. Afterwards the forces on each vertex are summed once. An edge that
+/// may touch two circles is in two windows; the second window adds its forces to those of the first.
 class WallPlan {
  public:
   explicit WallPlan(int num_vertices);
   /// @param near  circles and edges that may touch, sorted by circle and group
   void make(const std::vector<WallContacts::Item>& near);
-  /// Valid until the next make().
+  /// The result is valid until the next make().
   const kernel::WallWindows& windows() const { return windows_; }
 
  private:

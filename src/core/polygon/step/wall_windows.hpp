@@ -18,7 +18,7 @@ void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
 
 /// Marks the groups of vertices that a window may push. Edge i leads from vertex i to vertex i + 1; it pushes
 /// the vertices i - 1 to i + 2.
-/// @param is_pushed  the first entry is that of the group before the contour
+/// @param is_pushed  the first entry belongs to the group before the contour
 void mark_pushed_groups(const kernel::WallWindow& window, std::vector<std::uint8_t>& is_pushed);
 
 }  // namespace clog

@@ -23,7 +23,7 @@ double cosine(double degrees) { return portable::cos(degrees * pi / 180); }
 /// The angle from one direction to another, by their cross and dot products.
 double turn_between(double cross, double dot) {
   // For the small angles between adjacent vertices, the series of the arc tangent takes a tenth of the time.
-  // Its terms go up to 0.3^29/29 = 2e-17.
+  // The first omitted term is at most 0.3^29/29 = 2e-17.
   constexpr double small = 0.3;
   constexpr int last_power = 27;
   if (!(std::abs(cross) < small * dot)) return portable::atan2(cross, dot);
@@ -44,7 +44,7 @@ double way(const WallPlace& wall, double from, double to) {
 Index around(Index k, Index size) { return k < 0 ? k + size : k < size ? k : k - size; }
 
 /// Distance beyond the range of contact, in vertex diameters, up to which a vertex counts as on the wall.
-/// With it, a held end is not lost when its vertex hovers or bounces.
+/// With this tolerance, a held end is not lost when its vertex hovers or bounces.
 constexpr double hovering = 0.25;
 
 }  // namespace
@@ -157,8 +157,8 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
     return zone.wall.radius * turn_between(from.normal[0] * to.normal[1] - from.normal[1] * to.normal[0],
                                            (from.normal * to.normal).sum());
   };
-  // There is one end for each wetted vertex for which the sum along the outward edges contains no other
-  // wetted vertex.
+  // A wetted vertex gives an end if no other wetted vertex follows in the sum over the edges outwards from
+  // it.
   for (Index k = 0; k < num; ++k) {
     if (vertex(k).share < 1) continue;
     for (const Index side : {Index{0}, Index{1}}) {
@@ -168,7 +168,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       while (last - k < num && k - last < num && goes_on() && vertex(last + step).share < 1) last += step;
       if (goes_on() && vertex(last + step).share >= 1) continue;
 
-      // u decreases along the contour, so at an arc's last end -u grows outwards.
+      // u decreases along the contour, so at the last end of an arc the outward coordinate is -u.
       const double outwards = side == 1 ? -1 : 1;
       End end{zone.wall, side, 0, ends.gradients_.size(), 0};
       Beside here = beside(zone.wall, vertices, vertex(k).vertex);

@@ -84,7 +84,7 @@ void WettedWalls::find_near(const VertexPlaces& vertices, const LocalFrame& fram
       const int i = item.group * WallContacts::edges_per_group + std::countr_zero(bits);
       const Eigen::Array2d away{vertices.x[i] - item.x, vertices.y[i] - item.y};
       const double square = away.matrix().squaredNorm();
-      if (square >= item.reach * item.reach) continue;  // the wall does not wet it
+      if (square >= item.reach * item.reach) continue;  // the wall does not wet this vertex
       const double r = std::sqrt(square);
       meet(i, r - (item.reach - contact_range_ - width_), away / r);
     }
@@ -103,10 +103,11 @@ void WettedWalls::find_near(const VertexPlaces& vertices, const LocalFrame& fram
 }
 
 /// Adds the forces of U_gamma = sum gamma_e l_e. The tension gamma_e of an edge is Gamma + (Gamma_wall -
-/// Gamma) times the mean share of the edge's two vertices. This is the three-tension energy of Cheng et al.
-/// Eq. 2, with the tensions of a wetted wall's two sides combined. On a smooth interface the gradient of this
-/// energy has no component along the interface, because -d(gamma)/ds from the edges cancels the pull towards
-/// the wall. On a polygon there is such a component; it is an error of the finite edges.
+/// Gamma) times the mean share of the edge's two vertices. This is the energy of Cheng et al. Eq. 2, which
+/// has three tensions; here the two tensions at a wetted wall are combined into one. On a smooth interface
+/// the gradient of this energy has no component along the interface, because -d(gamma)/ds from the edges
+/// cancels the pull towards the wall. On a polygon there is a component along the interface; it is an error
+/// due to the finite edges.
 void WettedWalls::add_tension(const VertexPlaces& vertices, Forces& forces) const {
   const auto n = static_cast<int>(vertices.size);
   const auto of = [&](int i) -> const Forces::Vertex& {
@@ -129,7 +130,7 @@ void WettedWalls::add_tension(const VertexPlaces& vertices, Forces& forces) cons
     const double length_before = edge_before.matrix().norm(), length_after = edge_after.matrix().norm();
     push(i, -extra_tension_ * of(i).share.slope * (length_before + length_after) / 2 * of(i).normal);
     pull_together(before, i, edge_before, length_before);
-    // If the share of `after` is positive, the loop adds this edge when it reaches that vertex.
+    // If the share of the vertex `after` is positive, the loop adds this edge when it reaches `after`.
     if (!(of(after).share.share > 0)) pull_together(i, after, edge_after, length_after);
   }
 }

@@ -37,7 +37,8 @@ DropletState stack(const std::vector<double>& heights) {
   return state;
 }
 
-/// The number of edges in the middle of each arc that list the disc, by arc and layer.
+/// For each arc and layer, the number of edges in the middle of the arc that have a contact with the disc in
+/// this layer.
 std::map<std::pair<int, int>, int> layers_of(const DropletState& state, double thickness = film) {
   const ObstacleArray walls(20, {{0, 0, disc}});
   WallContacts contacts(walls, range, WallContacts::Keep::touched_by_edge, thickness);

@@ -74,9 +74,10 @@ Eigen::ArrayXd flattened(int n, double thickness, double shaking, unsigned seed)
 }
 
 TEST(SelfContacts, AreThoseOfAllVerticesAndEdgesWithEveryInstructionSet) {
-  // The numbers of vertices cover several cases: fewer than two groups, groups that are not full, contours in
-  // which pairs across are also pairs along the contour, and fine contours with many excluded vertices. On a
-  // stretched contour, the length of the contour decides which vertices are excluded.
+  // The numbers of vertices cover several cases: fewer than two groups of edges, groups that are not full,
+  // contours so coarse that vertices of the two strands are neighbours along the contour, and fine contours
+  // with many excluded vertices. On a stretched contour, the length of the contour decides which vertices are
+  // excluded.
   for (const std::string& set : instruction_sets())
     for (const int n : {16, 17, 24, 25, 30, 31, 32, 33, 64, 101, 256, 700})
       for (const double stretch : {0.7, 1.0, 2.5}) {
@@ -103,7 +104,8 @@ TEST(SelfContacts, AreThoseOfAllVerticesAndEdgesWithEveryInstructionSet) {
   use_instruction_set("auto");
 }
 
-/// Number of vertices on one side of a circle's first vertex that count as its neighbours.
+/// The first vertex of a stretched circle has neighbours, which are excluded from its self-contacts. Returns
+/// the number of neighbours on one side.
 int neighbours_of_first(double stretch) {
   const int n = 128;
   const double range = 0.0125, rest_edge = 0.025;
@@ -116,8 +118,9 @@ int neighbours_of_first(double stretch) {
 }
 
 TEST(SelfContacts, LeavesOutThreeRangesOfTheContour) {
-  // Three ranges are 1.5 edges at rest. A compressed contour excludes the next vertex, but never the vertex
-  // after it. A stretched contour excludes no vertex.
+  // Vertices within three ranges along the contour are excluded. Three ranges are 1.5 edges at rest. A
+  // compressed contour excludes the next vertex, but never the vertex after the next. A contour that is
+  // stretched enough excludes no vertex.
   EXPECT_EQ(neighbours_of_first(1), 1);
   EXPECT_EQ(neighbours_of_first(0.2), 1);
   EXPECT_EQ(neighbours_of_first(1.4), 1);
@@ -130,8 +133,8 @@ TEST(SelfContacts, ItemsAreThePairs) {
     for (const int first : {0, n / 4 + 1}) {
       const double rest_edge = units::regular_edge_length(n);
       SelfContacts contacts(rest_edge, rest_edge);
-      // One half of the contour is compressed lengthwise. So there a strand touches itself with parts that
-      // have equal directions.
+      // One half of the contour is compressed lengthwise, so that parts of one strand with equal directions
+      // touch each other.
       Eigen::ArrayXd position = test::dumbbell(n, 0.03);
       position.tail(n) *= (position.head(n) > 0).select(Eigen::ArrayXd::Constant(n, 0.05), 1.0);
       const Eigen::ArrayXd narrow = (position.head(n) > 0).select(0.2 * position.head(n), position.head(n));

@@ -71,9 +71,9 @@ TEST(SelfCrossings, AreSavedAndRestored) {
   EXPECT_TRUE((restored.state().velocity == droplet.state().velocity).all());
 }
 
-/// A contour with a spike from above and a finger. Vertex 0 is the tip of the spike. It can be led through
-/// the finger from the left, and round the finger's tip at the origin. The finger is between edges 4 and 5,
-/// which meet at vertex 5.
+/// A contour with a spike from above and a finger. Vertex 0 is the tip of the spike. A test can lead this
+/// vertex through the finger from the left, and round the finger's tip at the origin. The finger is between
+/// edges 4 and 5, which meet at vertex 5.
 class SpikeAtFinger {
  public:
   SpikeAtFinger() : forces_(run(), nothing), state_(test::state_of(shape())) {}
@@ -161,7 +161,7 @@ TEST(SelfCrossings, HaveAContinuousEnergyOnTheirWayRoundAFreeEnd) {
   }
 }
 
-/// The force that the step applies to each coordinate of a droplet at rest.
+/// The force on each coordinate of a droplet at rest, from the velocity after one short step.
 Eigen::ArrayXd forces_of_step(const RunParameters& given, const DropletState& state) {
   RunParameters run = given;
   run.time_step = 1e-6;  // so short that nothing moves

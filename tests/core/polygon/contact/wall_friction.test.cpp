@@ -87,8 +87,7 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
   EXPECT_GT(wetted, 2 * units::regular_edge_length(64));
 }
 
-/// Describes how well the sum of two energies is conserved: the energy of a held droplet, and the dissipated
-/// energy.
+/// Describes how well the sum of a held droplet's energy and the dissipated energy is conserved.
 struct Balance {
   double worst = 0;  ///< Largest difference between the sum and its first value.
   double rise = 0;   ///< Largest rise of the droplet's energy alone between two times.
@@ -170,8 +169,8 @@ TEST(WallAnchors, OfFrictionThroughAFilmBalanceTheEnergyToSecondOrder) {
 }
 
 TEST(WallFriction, IsUsedUpWhereALightRopeBeginsToSlide) {
-  // A rope over a disc slides at T_2 = exp(mu theta) T_1 (capstan formula). Its moment about the centre is
-  // then (T_2 - T_1) R, for any distribution of this moment over the points.
+  // A rope over a disc slides at T_2 = exp(mu theta) T_1 (capstan formula). The moment of friction about the
+  // disc's centre is then (T_2 - T_1) R, however the points share this moment.
   constexpr double mu = 0.3, radius = 0.5, stiffness = 1e4;
   constexpr int num = 400;
   const WallFriction friction(mu, 0, stiffness, {});
@@ -184,7 +183,7 @@ TEST(WallFriction, IsUsedUpWhereALightRopeBeginsToSlide) {
       state.x()[i] = radius * std::cos(angle);
       state.y()[i] = radius * std::sin(angle);
       touches.push_back({i, disc, foot_on(disc, {}, {state.x()[i], state.y()[i]}), pressed, 0});
-      // Only the part of the rope next to its loaded end carries load. Each point there carries as much as it
+      // Only points near the loaded end of the rope carry load. Each of these points carries as much as it
       // can.
       if (angle < (1 - share) * pi) continue;
       const double slip = mu * pressed / stiffness;
@@ -200,8 +199,8 @@ TEST(WallFriction, IsUsedUpWhereALightRopeBeginsToSlide) {
 }
 
 TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
-  // On an incline, no end of a wetted arc loses its anchor. The loss of an anchor takes place within a single
-  // step, so its error would hide the second order.
+  // A contact line may lose an anchor within a single step, and the error of this step would hide the second
+  // order. On an incline no anchor is lost.
   RunParameters run = bare_parameters();
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.3;
@@ -214,9 +213,9 @@ TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
   expect_balance(run, ObstacleArray(20, {}, {incline}), 0.2);
 }
 
-/// A rope over half of a disc, made of vertices that stiff springs join. The straight ends of the rope hang
-/// along +x. The disc pushes the vertices away, and holds them by friction. Forces pull at both ends until
-/// the rope rests or slides.
+/// A rope over half of a disc. The rope consists of vertices that are joined by stiff springs. The straight
+/// ends of the rope hang along +x. The disc pushes the vertices away, and holds them by friction. Forces pull
+/// at both ends until the rope rests or slides.
 class Rope {
  public:
   static constexpr double radius = 0.5;
@@ -262,7 +261,8 @@ class Rope {
   KnownAnchors known_;
   DropletState state_;
 
-  /// Makes a step of length 1. The mass makes the step stable. The drag lets the rope swing hardly at all.
+  /// Makes a step of length 1. The mass is large enough for a stable step. The drag nearly stops the rope
+  /// from swinging.
   void move(double first_pull, double second_pull, double weight) {
     constexpr double mass = 8 * spring_;
     const double kept = 1 - 2 * pi * 0.35 / n_;
@@ -331,9 +331,10 @@ TEST(RopeOverADisc, WithoutWeightSlidesAtExpMuTheta) {
 }
 
 TEST(RopeOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
-  // The tension follows dT/dphi = mu (T + w R sin phi) + w R cos phi over half a turn. The solution is L_2 =
-  // exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). The ends of the rope are longer or shorter than
-  // these overhangs. Forces at the ends replace the missing weight, or balance the additional weight.
+  // The tension follows dT/dphi = mu (T + w R sin phi) + w R cos phi over half a turn. So the rope begins to
+  // slide when the lengths of its hanging ends fulfil
+  // L_2 = exp(mu pi) L_1 + 2 mu R (1 + exp(mu pi))/(1 + mu^2). The ends of the simulated rope have other
+  // lengths. Forces at the ends replace the missing weight, or balance the additional weight.
   const double mu = 0.5, weight = 2;
   const double grip = std::exp(mu * pi);
   const double hanging = 0.3 * 0.5 * pi;
@@ -391,8 +392,8 @@ RunResult ended(DropletRun run) {
 
 TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
   // Without friction the droplet slips off. With friction, both kinds of clog-detection find the same place
-  // of rest. The certified detection is faster, because it starts its search for an equilibrium as soon as
-  // the walls hardly yield any more.
+  // of rest. The certified detection is faster, because its search for an equilibrium starts as soon as the
+  // walls nearly cease to yield.
   constexpr double quiet = 1e-15;
   EXPECT_EQ(ended(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
   const RunResult certified = ended(falls_on_disc(0.1, ClogDetection::certified, quiet));

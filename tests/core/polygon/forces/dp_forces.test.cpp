@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// Parameters with which only the term that is switched on acts.
+/// Parameters that switch off all terms of the interface, except for those that `switch_on` adds.
 RunParameters only(void (*switch_on)(RunParameters&), int vertices = 64) {
   RunParameters run = bare_parameters(vertices);
   run.dp.line_tension = 0;
@@ -86,7 +86,7 @@ TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   forces.update_contacts(state, {});
   ASSERT_GT(forces.energy(state).wall, 0);
-  // The rounding error, multiplied by the contact's stiffness of 1000.
+  // The tolerance is larger by the contact's stiffness of 1000.
   EXPECT_LT(force_error(forces, state), 1e-5);
 }
 
@@ -125,7 +125,8 @@ TEST(DpForces, InternalForcesExertNoNetForceAndNoTorque) {
 }
 
 TEST(DpForces, SpringsAlongTheInterfaceDoNotPushTheDroplet) {
-  // Each vertex is pulled without a reaction on its neighbours. The reaction acts on the liquid.
+  // A spring along the interface pulls a vertex against the liquid, not against the neighbouring vertices.
+  // The sum of all forces must be the weight alone.
   const ObstacleArray nothing = no_obstacles();
   RunParameters run;
   run.dp.vertices = 64;
@@ -185,8 +186,8 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
 }
 
 class ContactLists : public testing::TestWithParam<double> {};
-// The smallest speed is that of a sinking droplet. At the largest speed, a droplet moves by more than the
-// usual skin between two updates. The skin is the margin of the contact lists.
+// The smallest speed is that of a sinking droplet. Contact lists have a margin, the skin. At the largest
+// speed, a droplet moves by more than the usual skin between two updates.
 INSTANTIATE_TEST_SUITE_P(Speeds, ContactLists, testing::Values(0.05, 0.8, 5.0));
 
 TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
@@ -204,8 +205,7 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
   const double cutoff = run.drag.near_wall_cutoff;
   const double stiffness = contact_stiffness(*run.wall_stiffness, 2 * range);
   for (int step = 0; step < 2000; ++step) {
-    // Lists are updated only in every other step. In the steps between, the forces are right only because of
-    // the skin.
+    // The lists are updated only in every other step, so the forces in the other steps depend on the skin.
     if (step % 2 == 0) {
       if (state.recentre().any()) forces.forget_contacts();
       forces.update_contacts(state, state.possible_travel(0.2));
@@ -300,8 +300,8 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
 
 TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
   // A wetted wall changes the tension along the interface. The springs along the interface do not balance
-  // this change: the edges of the polygon carry a part of it, and the liquid takes the rest. So no force acts
-  // on the droplet as a whole along a flat wall.
+  // this change. The edges of the polygon carry a part of the change, and the liquid takes the rest. The
+  // sum of all forces along a flat wall must be zero.
   const ObstacleArray wall(20, {}, {{.tip = {0.37, 0}, .axis = {1, 0}, .half_angle = std::numbers::pi / 2}});
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
   run.dp.perimeter_spring = PerimeterSpring::along;
@@ -347,8 +347,8 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
 }
 
 TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
-  // So far downstream, coordinates that are not shifted would lose five to six of the 16 digits of an edge.
-  // The published method does not shift coordinates.
+  // Coordinates are shifted to keep digits. Without shifts, as in the published method, an edge would lose
+  // five to six of its 16 digits so far downstream.
   const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 25}, 3);
   ReferenceForces near(bare_parameters(256), array);
   ReferenceForces far(bare_parameters(256), array);

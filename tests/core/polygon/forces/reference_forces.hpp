@@ -35,8 +35,9 @@ class ReferenceForces : public DpForces {
       net_spreading += wetting_.net_spreading;
     }
     if (run_.dp.gravity == Gravity::area) {
-      // The forces of tension and pressure add up to zero. The springs along the interface act against the
-      // liquid instead of their neighbours. So they exert no force on the droplet as a whole.
+      // The forces of tension and pressure add up to zero. The springs along the interface pull vertices
+      // against the liquid, not against other vertices. The liquid is part of the droplet, so the sum of the
+      // spring forces (`net_spreading`) must not move the droplet.
       find_centroid_gradient();
       for (int i = 0; i < n_; ++i)
         add(force, i,
@@ -101,8 +102,8 @@ class ReferenceForces : public DpForces {
     return force;
   }
 
-  /// d(a X) is the integral of (x - X) times the outward displacement over the surface. Along each edge, x -
-  /// X changes linearly. So a vertex takes the part (2 q_i + q_j)/6 of the outward normal of the edge.
+  /// Integrates a dX = integral of (x - X) times the outward displacement over the surface. Along an edge,
+  /// q = x - X changes linearly, so vertex i gets (2 q_i + q_j)/6 times the outward normal of the edge.
   void find_centroid_gradient() {
     const double area = polygon_shape(position_).area;
     const Eigen::Array2d centre = area_centroid(position_);
@@ -117,7 +118,7 @@ class ReferenceForces : public DpForces {
       }
   }
 
-  /// Calls visit(item, i) for every circle, and for each edge or vertex i that lists this circle.
+  /// Calls visit(item, i) for each pair of a circle in the contact lists and an edge or vertex i near it.
   template <class Visit>
   void for_each_listed(const WallContacts& contacts, Visit visit) const {
     for (const WallContacts::Item& item : contacts.items())
@@ -151,8 +152,8 @@ class ReferenceForces : public DpForces {
     const double d = away.matrix().norm() + 1e-300;  // avoids NaN for a point that is exactly at the centre
     return contact_stiffness() * std::max(0.0, reach - d) / d * away;
   }
-  /// The nearest point divides the push between the two ends of the half edge. A force on a middle acts on
-  /// the four vertices that determine the middle.
+  /// The position of the nearest point decides how the two ends of the half edge share the push. A force on a
+  /// middle acts on the four vertices that determine the middle.
   void push_half_edge(Eigen::ArrayXd& force, int i, bool is_first, const Eigen::Array2d& centre,
                       double reach) const {
     const Eigen::Array2d begin = is_first ? vertex(i) : middle(i), end = is_first ? middle(i) : vertex(i + 1);

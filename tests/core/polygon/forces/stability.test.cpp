@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;
 
-/// The largest omega^2 of small motions about a shape. The value comes from power iteration on the Hessian
-/// divided by the mass. Finite differences give the Hessian.
+/// The largest omega^2 of small motions about a shape: the largest eigenvalue of the Hessian, divided by the
+/// mass. It comes from power iteration, in which finite differences replace products with the Hessian.
 double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
                        const ObstacleArray& obstacles = no_obstacles()) {
   const int n = *run.dp.vertices;
@@ -94,9 +94,9 @@ Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
 
 TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
   // On a round obstacle, a half edge presses deeper into the obstacle when it turns. This effect grows with
-  // the overlap, and makes the stiffest mode stiffer than the bound for a flat contact. The excess must be
-  // smaller than the margin of the bounds: all modes together stay this margin below 4, the limit of
-  // stability. The overlap is the largest that the automatic step allows.
+  // the overlap, and makes the stiffest mode stiffer than the bound for a flat contact. The bounds leave a
+  // margin below 4, the limit of stability. The effect must be smaller than this margin, even at the largest
+  // overlap that the automatic step allows.
   const double radius = 0.15;
   for (const int n : {64, 128, 256, 512}) {
     RunParameters run = bare_parameters(n);

@@ -101,7 +101,7 @@ TEST(DpDroplet, IsOfSecondOrderInTheTimeStepWithAreaDrag) {
 }
 
 TEST(DpDroplet, WithAreaDragFallsRoundAtTheTerminalSpeed) {
-  // Weight and drag act on the same area. So no force pulls along the interface, and the droplet remains a
+  // If weight and drag both act on the area, they do not pull along the interface, and the droplet remains a
   // circle.
   RunParameters run = robust_polygon(64);
   const ObstacleArray nothing = no_obstacles();
@@ -191,8 +191,8 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
         EXPECT_GT(droplet.work().dissipated, 0.01);
         return worst;
       };
-      // The error also depends on the step in which a contact begins, and this disturbs the effect of a
-      // single halving of the step. So the error is compared over four halvings.
+      // The error also depends on the place within a step at which a contact begins. This scatter would hide
+      // the effect of a single halving of the step, so the error is compared over four halvings.
       const double coarse = imbalance(8e-4);
       const double fine = imbalance(5e-5);
       EXPECT_LT(fine, 4e-6);
@@ -225,8 +225,8 @@ TEST(DpDroplet, ConservesEnergyWithoutDragToSecondOrder) {
 }
 
 TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
-  // Let a circle with the line density mu = M/P have a small wave r = R + e cos 2 phi that keeps the area.
-  // The energy of the wave is (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R). The wave moves the mass
+  // A circle with the line density mu = M/P has a small wave r = R + e cos 2 phi, which keeps the area. The
+  // energy of the wave is (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R). The mass in motion is
   // pi mu R, so omega^2 = 3 gamma/(mu R^2).
   RunParameters run = bare_parameters(128);
   run.drag.terminal_speed = no_drag;
@@ -289,7 +289,7 @@ TEST(DpDroplet, FeelsBitIdenticalForcesAnyNumberOfBoxesDownstream) {
 }
 
 TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForItWithoutDrag) {
-  // The perimeter is 6 times that of a circle. So the area mode has omega dt = 2.1 at this step.
+  // The perimeter is 6 times that of a circle, so the area mode has omega dt = 2.1 at this step.
   RunParameters run = bare_parameters(256);
   run.drag.terminal_speed = no_drag;
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
@@ -304,8 +304,9 @@ TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForItWithoutDrag) {
 }
 
 TEST(DpDroplet, HasAnImplicitPressureWhenStretchedTooFarForTheStep) {
-  // The same film with drag. The step must be split only if the drag does not act on changes of shape, or
-  // differs between vertices. Self-contact is off, because it splits steps of fast vertices.
+  // The film of the previous test, with drag. The step must be split only if the drag does not act on changes
+  // of shape, or differs between vertices. Self-contact is off, because it would split steps of fast
+  // vertices.
   RunParameters run = bare_parameters(256);
   run.dp.self_contact = SelfContact::off;
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
@@ -325,7 +326,7 @@ TEST(DpDroplet, HasAnImplicitPressureWhenStretchedTooFarForTheStep) {
 }
 
 TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
-  // The same film and the same step with the published scheme.
+  // The published scheme, with the film and the step of the previous test.
   RunParameters run = bare_parameters(256);
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
   const ObstacleArray nothing = no_obstacles();
@@ -345,8 +346,8 @@ TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
 }
 
 TEST(DpDroplet, IsSlowedByAWallAsTheDragLawSays) {
-  // Far above an obstacle, the drag slows the droplet down by a factor that depends on the mean of
-  // (sigma/d)^(4/3) over the vertices.
+  // Far above an obstacle, the drag on the droplet depends only on the mean of (sigma/d)^(4/3) over the
+  // vertices.
   RunParameters run = bare_parameters();
   run.drag.near_wall = 0.5;
   run.dp.line_tension = 10;  // keeps the droplet round

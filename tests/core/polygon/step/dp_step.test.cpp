@@ -31,7 +31,7 @@ double distance_from(const Wedge& wedge, const DropletState& state) {
   return nearest;
 }
 
-/// Compares the anchors in any order.
+/// Expects the same anchors, in any order.
 void expect_same_anchors(const DropletState& state, const DropletState& expected) {
   ASSERT_EQ(state.anchors.size(), expected.anchors.size());
   for (const WallAnchor& one : expected.anchors) {
@@ -64,7 +64,7 @@ class Step : public testing::TestWithParam<StepCase> {
     run.dp.vertices = vertices;
     run.dp.line_tension = 0.3;
     run.time_step = 1e-3;
-    // The published ranges of contacts suit the films and edges of these tests.
+    // The thickness of the films in these tests suits the published ranges of contacts.
     run.dp.contact_range = units::regular_edge_length(vertices) / 2;
     run.dp.self_contact_range = units::regular_edge_length(vertices);
     GetParam().change(run);
@@ -148,7 +148,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
 }
 
 TEST(InstructionSets, HaveDifferentNames) {
-  // Every name must be listed once. Otherwise use_instruction_set() cannot select each of them.
+  // Every name must be listed once, because use_instruction_set() selects a set by its name.
   const std::vector<std::string> names = instruction_sets();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }

@@ -15,9 +15,9 @@ namespace {
 using namespace test;
 
 TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
-  // Let all vertices be at the distance R + u from the centre. Then M u'' = -K_a A' (A - A_0) with A' = 2
-  // A/R. Let omega^2 = K_a A'^2/M. Then implicit steps from rest give u_n = u_0 cos(n phi) with 2 (1 - cos
-  // phi) = (omega dt)^2/(1 + (omega dt)^2). Explicit steps are unstable if omega dt is 2 or more.
+  // If all vertices are at the distance R + u from the centre, M u'' = -K_a A' (A - A_0) with A' = 2 A/R. Let
+  // omega^2 = K_a A'^2/M and s = (omega dt)^2. Then implicit steps from rest give u_n = u_0 cos(n phi) with
+  // cos phi = 1 - s/(2 + 2 s). Explicit steps are unstable if omega dt is 2 or more.
   constexpr int vertices = 64;
   const ObstacleArray nothing = no_obstacles();
   RunParameters run = bare_parameters(vertices);

@@ -9,8 +9,8 @@
 
 namespace clog::test {
 
-/// Makes the step as the documentation describes it, with one line per formula. The forces are the plain ones
-/// of ReferenceForces.
+/// Makes the step as the documentation describes it, with one line per formula. The forces come from
+/// ReferenceForces.
 class ReadableDroplet {
  public:
   ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial,
@@ -33,8 +33,8 @@ class ReadableDroplet {
     state_.velocity += h_over_m * force_ + h * drag(state_.velocity) + h * pressed(state_.velocity);
     state_.position += *run_.time_step * state_.velocity;
     find_forces();
-    // The drag of the second half kick depends on the velocity at the end of the kick. An iteration finds
-    // this velocity.
+    // In the second half kick, the drag depends on the velocity at the end of the kick, which an iteration
+    // finds.
     const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
     // Under-relaxation keeps the iteration stable next to a wall.
     for (int i = 0; i < 300; ++i)
@@ -100,8 +100,8 @@ class ReadableDroplet {
     result << -far * n_ * (area_x * g(0) + area_y * g(2)), -far * n_ * (area_x * g(1) + area_y * g(3));
     return result;
   }
-  /// The acceleration by an implicit pressure. The pressure is -K_a dt^2 times the acceleration of the area.
-  /// This acceleration comes from the forces, the drag on the area, and the added pressure itself.
+  /// The acceleration by an implicit pressure. The pressure is -K_a dt^2 times the acceleration of the area
+  /// by the forces, by the drag on the area, and by the implicit pressure itself.
   Eigen::ArrayXd pressed(const Eigen::ArrayXd& v) {
     if (pressure_ == Pressure::present) return Eigen::ArrayXd::Zero(force_.size());
     Eigen::ArrayXd gradient(force_.size());  // gradient of the area

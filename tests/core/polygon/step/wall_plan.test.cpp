@@ -19,7 +19,7 @@ namespace {
 using namespace test;
 
 TEST(WallPlan, PushesAsPlainLoopsDoWhicheverEdgesCirclesShare) {
-  // There are circles around a droplet. Plain loops compute the force with and without the circles. The
+  // Plain loops compute the force on a droplet with circles around it, and without the circles. The
   // difference is the expected force.
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> part(0, 1);

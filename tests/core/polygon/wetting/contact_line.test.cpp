@@ -50,7 +50,7 @@ TEST(ContactLine, ForceIsTheGradientOfTheEnergyWhileTheAnchorsRest) {
 }
 
 TEST(ContactLine, AnEndsGradientIsBounded) {
-  // The bound on the step follows from stability, and holds for any wetted wall.
+  // The gradient has a bound, which the limit of the time step uses. The bound must hold for any wetted wall.
   const ObstacleArray walls(20, {{0.63, 0.05, 0.15}});
   for (unsigned seed = 1; seed <= 200; ++seed) {
     RunParameters run = bare_parameters();
@@ -117,8 +117,8 @@ class OnAnIncline : public testing::TestWithParam<Angles> {
 INSTANTIATE_TEST_SUITE_P(Angles, OnAnIncline, testing::Values(Angles{1, 120, 180}, Angles{0.5, 100, 140}));
 
 TEST_P(OnAnIncline, ADropSticksBelowWhatFurmidgeAllowsAndSlidesAbove) {
-  // Furmidge's equation is a sin(slope) = Gamma (cos receding - cos advancing). If a drop slides, the drag
-  // balances the rest of its weight.
+  // Furmidge's equation is a sin(slope) = Gamma (cos receding - cos advancing). The wall holds a part of the
+  // weight of a sliding drop, and the drag balances the rest.
   const double allowed = cosine(GetParam().receding) - cosine(GetParam().advancing);
   for (const int vertices : {64, 128}) {
     DropletRun held = drop(0.98, vertices);
@@ -163,9 +163,9 @@ INSTANTIATE_TEST_SUITE_P(Sizes, OnADisc,
                                          Disc{"small", 0.5, 1, {0.5, 30, 150}, {0.03, 0.01}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// Only the forces along the wall on the two ends of the drop turn it around the disc's centre. So M g y = R
-/// (f_0 - f_1), where y is the offset of the drop's centroid from the disc's centre. In this way two lobes of
-/// different weight are held over a disc.
+/// Apart from the weight, only the forces f_0 and f_1 along the wall, on the two ends of the drop, have a
+/// torque about the disc's centre. The balance is M g y = R (f_0 - f_1), where y is the offset of the drop's
+/// centroid from the disc's centre. In this way a disc holds two lobes of different weight.
 TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
   const Disc& disc = GetParam();
   double error[2];

@@ -17,13 +17,13 @@ struct VertexPush {
 /// The place where the interface crosses itself because a vertex passed through an edge.
 struct CrossingPlace {
   int vertex, edge;
-  /// Vertices where the edges end, forwards and backwards along the contour; -1: not nearby.
+  /// Vertices where the crossed edges end, forwards and backwards along the contour; -1: not nearby.
   std::array<int, 2> ends;
   /// An edge that begins at the crossed vertex, or at the last of its crossed neighbours, and ends at a
   /// vertex that has not passed through.
   struct OwnEdge {
     int begin, end;
-    bool crosses;  ///< whether it crosses the interface near the crossing's edge
+    bool crosses;  ///< whether this edge crosses the interface near `edge`
   };
   std::array<OwnEdge, 2> own;
 };
@@ -31,10 +31,10 @@ struct CrossingPlace {
 /// Distance of a crossed vertex from the interface that it passed through, and its place without the
 /// crossing.
 ///
-/// The vertex can return where it passed through. If both of its own edges slip off an end of the crossed
-/// edges, it can also return there. So the depth is the distance of the vertex from the crossed edge, but it
-/// is limited at each end: it is at most the distance of this end from the farther one of the own edges that
-/// still cross.
+/// The vertex can return through the crossed edge. It can also return around an end of the crossed edges, if
+/// both of its own edges slip off this end. Therefore the depth is the distance of the vertex from the
+/// crossed edge, but it does not exceed a limit for each end. The limit is the distance from this end to the
+/// farther one of the vertex's own edges that still cross.
 class CrossingDepth {
  public:
   CrossingDepth(const Contour& contour, const CrossingPlace& place);
@@ -50,11 +50,11 @@ class CrossingDepth {
   void add_gradient_of_shift(const Eigen::Array2d& factor, std::vector<VertexPush>& to) const;
 
  private:
-  /// Distance of the end of the edges from an own edge of the vertex.
+  /// Distance from an end of the crossed edges to an edge of the vertex.
   struct Slip {
     double distance = std::numeric_limits<double>::infinity();
     int end = 0, own_begin = 0, own_end = 0;
-    double fraction = 0;             // of the point of the own edge that is nearest to the end
+    double fraction = 0;             // place on the vertex's edge of the point nearest to the end
     Eigen::Array2d direction{0, 0};  // from this point to the end
   };
   int vertex_, begin_, end_;

@@ -25,8 +25,8 @@ struct VertexPair {
 /// Edges close to a vertex along the contour do not count as contact, because otherwise every vertex would
 /// touch its neighbours. An edge is close if it is less than three ranges away along the present contour, and
 /// also fewer than exclusion() vertices away. In a compressed contour the number of vertices decides. This
-/// number is fixed, so contacts there do not depend on when the pairs were made. In a stretched contour the
-/// distance decides, so that long edges cannot cross in a sharp fold.
+/// number is fixed, so the contacts of a compressed contour do not depend on when the pairs were made. In a
+/// stretched contour the distance decides, so that long edges cannot cross in a sharp fold.
 class SelfContacts {
  public:
   struct Pair {
@@ -44,7 +44,7 @@ class SelfContacts {
   /// Rebuilds the pairs if the shape may change too much before the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
-  /// Whether the pairs stay valid until the next update. Does not change them.
+  /// Whether the present pairs stay valid until the next update.
   /// @param moved  bound on the displacement of any vertex since rebuild(), relative to the mean of all
   /// [sigma]
   bool hold(double moved, const Travel& travel) const;
@@ -60,9 +60,9 @@ class SelfContacts {
   bool are_neighbours(int a, int b) const;
 
   /// The pairs, arranged for vector instructions. An item has a group of WallContacts::edges_per_group edges
-  /// and as many consecutive vertices. Opposite strands of the contour run in opposite directions, so the
-  /// last of these vertices is paired with the first edge. In a strand that is compressed until it touches
-  /// itself, the directions are equal, so the first vertex is paired with the first edge.
+  /// and an equal number of consecutive vertices. Opposite strands of the contour run in opposite directions,
+  /// so the last of these vertices is paired with the first edge. In a strand that is compressed until it
+  /// touches itself, the directions are equal, so the first vertex is paired with the first edge.
   struct Item {
     int edges;           ///< first edge of a group
     int vertices;        ///< first vertex; vertex N + i is vertex i
@@ -97,7 +97,7 @@ class SelfContacts {
   void fill_items(const DropletState& state);
 };
 
-/// Closest point of an edge to a vertex.
+/// The point of an edge that is closest to a vertex.
 struct EdgeContact {
   double distance;  ///< [sigma]
   double fraction;  ///< the point's place on the edge, 0 at its first vertex, 1 at the next

@@ -13,18 +13,16 @@ namespace clog {
 /// them back.
 ///
 /// The repulsion of self-contact depends on the distance between a vertex and an edge, on whichever side of
-/// the edge the vertex is. Both sides are possible: a film of water may separate the vertex from the edge
-/// (they are neighbours across the outside), or a thread of oil (across the inside). So a vertex with more
-/// kinetic energy than the barrier k_c d_s^2/2 would pass through the edge and then be pushed onward. To
-/// prevent this, a vertex is recorded (SelfCrossing) when its path passes through the inside of an edge. The
-/// record ends when its path leads back through this edge, or through a neighbouring edge to which the vertex
-/// has slid. Until then the vertex has the energy
-///   k_c [(d_s + D)^2 - d_s^2]/2.
-/// Its depth D is its distance from the edge, or less near an end of the edges (CrossingDepth). Other
-/// contacts between the vertex or its edges and these edges are muted, because unsigned distances do not
-/// distinguish the sides. Instead, the muted contacts are computed as if the vertex were nearer to the edge
-/// by D, and so usually on the edge. The energy is therefore continuous where a vertex passes through an
-/// edge, comes back, or slips off an end.
+/// the edge the vertex is. The vertex may be on either side: the water outside the droplet may separate the
+/// vertex from the edge, or the oil inside it. So a vertex with more kinetic energy than the barrier k_c
+/// d_s^2/2 would pass through the edge and then be pushed onward. To prevent this, a vertex is recorded
+/// (SelfCrossing) when its path passes through the inside of an edge. The record ends when the vertex passes
+/// back through this edge, or through a neighbouring edge to which it has slid. Until then the vertex has the
+/// energy k_c [(d_s + D)^2 - d_s^2]/2. The depth D is the distance of the vertex from the edge; near an end
+/// of the edges D is smaller (CrossingDepth). Other contacts of the vertex and its own edges with the crossed
+/// edges are muted, because unsigned distances do not distinguish the sides. Instead, the muted contacts are
+/// computed as if the vertex were nearer to the edge by D, so that it is usually on the edge. The energy is
+/// therefore continuous where a vertex passes through an edge, comes back, or slips off an end.
 class SelfCrossings {
  public:
   /// The last motion of the vertices: they moved to their present places with these velocities, for this
@@ -36,10 +34,10 @@ class SelfCrossings {
   /// Records new crossings, and ends crossings when the vertex has returned.
   /// @return whether muted() has changed
   bool follow(const Contour& contour, const Drift& drift, const SelfContacts& contacts, DropletState& state);
-  /// Finds the muted contacts of these crossings, and removes crossings that the contour does not have.
+  /// Finds the muted contacts of these crossings. Removes crossings that the contour does not have.
   void rebuild(const Contour& contour, std::vector<SelfCrossing>& crossings);
 
-  /// A contact that find_pushes() includes, and the number of the crossing that mutes it.
+  /// A muted contact, which find_pushes() computes, and the number of the crossing that mutes it.
   struct Muted {
     SelfContacts::Pair pair;
     int crossing;
@@ -48,7 +46,7 @@ class SelfCrossings {
   bool is_muted(const SelfContacts::Pair& pair) const;
 
   /// Finds pushes() of the crossings of the last rebuild(), with their muted contacts.
-  /// @return the energy of which they are the negative gradient, divided by the stiffness [sigma^2]
+  /// @return the energy divided by the stiffness [sigma^2]; the pushes are its negative gradient
   double find_pushes(const Contour& contour, const SelfContacts& contacts);
   const std::vector<VertexPush>& pushes() const { return pushes_; }
 

@@ -22,8 +22,7 @@ inline double film_thickness(const DpParameters& dp) {
 
 /// Lists of the obstacles near a polygon. `Keep` defines what is listed:
 /// - `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle with a surface that was
-/// within
-///   `range` + skin of the edge.
+///   within `range` + skin of the edge.
 /// - `touched_by_vertex`: vertex i lists every obstacle with a surface that was within `range` + skin of the
 ///   vertex.
 /// - `nearest_to_vertex`: vertex i lists every obstacle that could become its nearest.
@@ -32,10 +31,10 @@ inline double film_thickness(const DpParameters& dp) {
 ///
 /// Where a droplet hangs over a circle, a second part of its interface may rest on the first, and further
 /// parts on these. Such a stack has layers. Layer k has k other parts of the interface between itself and the
-/// circle. It touches the circle itself, enlarged by k times the thickness `film`. So the circle carries each
-/// layer by a force along the circle's smooth normal. If layers rested on each other instead, corners of
-/// their edges would interlock and transmit a tangential force, which a film of liquid cannot transmit. Only
-/// lists of edges have layers.
+/// circle. In the model, layer k touches the circle directly, but the circle is enlarged by k times the
+/// thickness `film`. So the circle carries each layer by a force along the circle's smooth normal. If layers
+/// rested on each other instead, corners of their edges would interlock and transmit a tangential force,
+/// which a film of liquid cannot transmit. Only lists of edges have layers.
 class WallContacts {
  public:
   enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
@@ -49,7 +48,7 @@ class WallContacts {
   /// Discards the lists. Call this when positions change without motion: when the frame's origin is shifted,
   /// or the polygon is rescaled.
   void invalidate() { reference_.resize(0); }
-  /// Whether the lists stay valid until the next update. Does not change them.
+  /// Whether the present lists stay valid until the next update.
   /// @param moved  bound on the displacement of any vertex since rebuild() [sigma]
   bool hold(double moved, const Travel& travel) const;
   void rebuild(const DropletState& state, const Travel& travel);

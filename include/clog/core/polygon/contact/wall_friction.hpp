@@ -9,10 +9,10 @@
 
 namespace clog {
 
-/// k_t/k_c, the stiffness of the springs between interface and wall divided by that of the contact. The value
-/// is usual for grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). With this value, a vertex slips by
-/// mu k_c/k_t times the depth of the contact before its spring reaches the limit: 7 % of a vertex diameter
-/// for mu = 1.
+/// k_t/k_c, the stiffness of the springs between interface and wall divided by the stiffness of the contact.
+/// The value is usual for grains (Silbert et al., Phys. Rev. E 64, 051302 (2001)). With this value, a vertex
+/// slips by mu k_c/k_t times the depth of the contact before its spring reaches the limit: 7 % of a vertex
+/// diameter for mu = 1.
 inline constexpr double friction_stiffness_ratio = 2.0 / 7;
 
 /// Dry friction of walls, and a yield traction. When a wall begins to push a vertex, a spring ties the vertex
@@ -37,8 +37,8 @@ class WallFriction {
   double energy(const DropletState& state) const;
   /// How near the droplet is to sliding around a circle. For one circle, this is the moment of the springs'
   /// forces about the circle's centre, divided by the largest moment that friction can give with the present
-  /// normal forces. It is 1 where the interface begins to slide. All layers on the circle count together.
-  /// Returns the largest value of these circles; NaN if none touches the droplet. @param circles  in the
+  /// normal forces. It is 1 where the interface begins to slide. All layers on a circle count together.
+  /// Returns the largest value of all circles; NaN if no circle touches the droplet. @param circles  in the
   /// droplet's coordinates
   double use(const DropletState& state, std::span<const WallTouch> touches,
              std::span<const Obstacle> circles) const;

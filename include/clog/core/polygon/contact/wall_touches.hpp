@@ -12,7 +12,8 @@
 
 namespace clog {
 
-/// Finds the vertices that walls push, and so can hold by friction. The contacts are those of DpForces.
+/// Finds the vertices that walls push, because walls can hold only these vertices by friction. The contacts
+/// are those of DpForces.
 class WallTouches {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -34,7 +35,7 @@ class WallTouches {
     WallPlace wall;
     Eigen::Array2d push{0, 0};
     double wetted = 0;
-    int next;  ///< part of the same vertex, -1: none
+    int next;  ///< next part of the same vertex; -1: none
   };
   const ObstacleArray* obstacles_;
   double range_, stiffness_;

@@ -19,7 +19,7 @@ namespace clog {
 struct InterfaceTerms {
   double line_tension;   ///< tension gamma, without the springs
   double spring;         ///< stiffness k_l N_v of springs that carry tension
-  double spring_length;  ///< their rest length: l0, or the mean edge length
+  double spring_length;  ///< rest length of these springs: l0, or the mean edge length
   double spreading;      ///< stiffness k_l N_v of springs that act only along the interface
   double pressure;       ///< pressure by the area's stiffness, -k_a (a - a0)
   double vertex_weight;  ///< weight of a vertex along +x, M g / N_v
@@ -35,8 +35,8 @@ class DpForces {
 
   /// @param travel  bound on the displacement until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
-  /// Whether update_contacts() would leave the lists unchanged. Also returns false if these bounds are too
-  /// coarse to decide.
+  /// Whether update_contacts() would leave the lists unchanged. Also returns false if the bounds in the
+  /// arguments are too coarse to decide.
   /// @param moved  bound on the displacement of any vertex since walls() were rebuilt [sigma]
   /// @param moved_relative  bound on the displacement of any vertex relative to the mean of all, since
   /// self_contacts() were rebuilt [sigma]
@@ -61,7 +61,8 @@ class DpForces {
 
   double vertex_diameter() const { return vertex_diameter_; }
 
-  /// The terms of the interface at this area and perimeter, and the contacts; the integrator needs them.
+  /// These functions return the data that the integrator needs: the terms of the interface at this area and
+  /// perimeter, and the contacts.
   InterfaceTerms interface(double area, double perimeter) const;
   double contact_stiffness() const { return contact_stiffness_; }
   const WallContacts& walls() const { return walls_; }

@@ -4,8 +4,8 @@
 
 namespace clog {
 
-/// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma]. They
-/// are the bounds of a chain of masses M/N_v. Velocity Verlet is stable for omega dt < 2.
+/// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma]. The
+/// bounds hold for a chain of masses M/N_v. Velocity Verlet is stable for omega dt < 2.
 struct StiffModes {
   /// One vertex in contact with a wall (with both its edges if walls push edges): 2 k_c N_v/M.
   double contact = 0;
@@ -20,7 +20,7 @@ struct StiffModes {
   double pinning = 0;   ///< spring that holds the end of a wetted arc
   double friction = 0;  ///< springs by which walls hold a vertex along them, k_t N_v/M
 
-  /// The sum for a droplet that does not touch itself.
+  /// Sum of the modes of a droplet that does not touch itself.
   double sum() const { return contact + area + tension + spring + wetting + pinning + friction; }
 };
 
@@ -33,7 +33,8 @@ inline constexpr double auto_contact_omega_dt2 = 0.5;
 inline constexpr double max_contact_omega_dt2 = 1.0;
 inline constexpr double max_total_omega_dt2 = 3.0;
 /// Largest accepted (omega dt)^2 of all modes together for a droplet in contact with itself. This bound is
-/// larger, because self-contact is rare, and softer than StiffModes::self_contact assumes.
+/// larger than max_total_omega_dt2, because self-contact is rare and softer than StiffModes::self_contact
+/// assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
 /// The area mode is anharmonic in the perimeter, so it has a separate bound. With a bound of 1.25, three
 /// times as many droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
@@ -46,12 +47,12 @@ inline constexpr double auto_step_margin = 0.8;
 /// edge [sigma]. A shortest edge below a hundredth of the mean edge counts as a hundredth of the mean edge.
 StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter, double shortest_edge);
 
-/// Largest time step [t0] that keeps every bound above.
+/// Largest time step [t0] with which the modes stay within all bounds above.
 double largest_stable_step(const StiffModes& modes);
 /// Largest time step [t0] if the pressure is implicit (see Pressure).
 double largest_step_with_implicit_pressure(const StiffModes& modes);
 
-/// A droplet that needs more sub-steps for one time step has burst; the run ends at its next check.
+/// A droplet that needs more sub-steps than this for one time step has burst; the run ends at its next check.
 inline constexpr int most_substeps = 1000;
 
 enum class Pressure {
@@ -67,10 +68,10 @@ struct Steps {
   double length;
   Pressure pressure = Pressure::present;
 };
-/// The smallest number of equal steps that cover `steps` time steps and keep every bound. It is at least
-/// `steps`, and at most most_substeps times as large. Up to 2 `steps` the number is exact. A larger number is
-/// rounded up to a multiple of `steps`, because such shapes are far from the regular polygons for which the
-/// bounds hold.
+/// The smallest number of equal steps that cover `steps` time steps and stay within all bounds. It is at
+/// least `steps`, and at most most_substeps times as large. Up to 2 `steps` the number is exact. A larger
+/// number is rounded up to a multiple of `steps`, because shapes that need so many steps are far from the
+/// regular polygons for which the bounds hold.
 /// @param most  Pressure::implicit: the pressure may be implicit if this saves steps
 Steps stable_steps(const StiffModes& modes, int steps, double time_step, Pressure most);
 

@@ -20,16 +20,16 @@ bool has_hysteresis(const DpParameters& dp);
 struct WettedShare {
   double share, slope;
 };
-/// The wetted fraction is 1 where contact begins, and 0 farther than `width` beyond this distance. It changes
-/// by a smooth step, so that energies and forces are continuous.
+/// The wetted fraction is 1 up to `contact_range`, and 0 from `contact_range` + `width` on. It changes by a
+/// smooth step, so that energies and forces are continuous.
 inline WettedShare wetted_share(double distance, double contact_range, double width) {
   const double t = std::clamp((contact_range + width - distance) / width, 0.0, 1.0);
   return {t * t * t * (10 + t * (6 * t - 15)), -30 * t * t * (1 - t) * (1 - t) / width};
 }
 
 /// Stiffness k_p of the springs that hold the ends of wetted arcs, in units of Gamma per vertex diameter.
-/// With this value, an end slips before its spring reaches the limit: by half a vertex diameter times the
-/// difference of the angles' cosines.
+/// With this value, an end slips by half a vertex diameter times the difference of the angles' cosines before
+/// its spring reaches the limit.
 inline constexpr double pinning_stiffness = 2;
 /// Bound on the squared norm of the gradient of q (see ContactLine). Two things contribute to this gradient:
 /// the wetted fractions of the last vertices, and the dependence of these fractions on the vertices'
@@ -67,7 +67,7 @@ class ContactLine {
     WallPlace wall;
     Eigen::Index side;  ///< 0: the arc's first end along the contour, 1: its last end
     double place;       ///< q, counted outwards [sigma]
-    /// Range in Ends::gradients of the derivatives of q with respect to vertices.
+    /// The range in Ends::gradients that contains the derivatives of q with respect to vertices.
     std::size_t first_gradient, num_gradients;
   };
   struct Gradient {
@@ -84,9 +84,9 @@ class ContactLine {
   void add_forces(std::span<const WallAnchor> anchors, const Ends& ends, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(std::span<const WallAnchor> anchors, const Ends& ends) const;
-  /// Moves anchors if the forces of their springs exceed their limits. An end keeps the nearest anchor of its
-  /// wall and side. A new end gets a new anchor, and anchors of vanished ends are removed. Afterwards there
-  /// is one anchor for each end, in the order of the ends.
+  /// Moves anchors if the forces of their springs exceed their limits. Each end keeps the nearest anchor on
+  /// its wall and on its side of the arc. A new end gets a new anchor, and anchors of vanished ends are
+  /// removed. Afterwards there is one anchor for each end, in the order of the ends.
   WallYield follow(std::vector<WallAnchor>& anchors, const Ends& ends, Purpose purpose) const;
 
  private:
@@ -95,7 +95,8 @@ class ContactLine {
   bool is_on_;
   double stiffness_, most_outwards_, most_inwards_;  // k_p, and limits of the force
   double contact_range_,
-      width_;  // range of the contact, and width in which the wetted share falls to 0 [sigma]
+      width_;  // range of the contact, and width of the zone beyond it in which the wetted fraction falls to
+               // 0 [sigma]
   std::span<const Wedge> wedges_;
 
   Beside beside(const WallPlace& wall, const VertexPlaces& vertices, Eigen::Index vertex) const;

@@ -13,9 +13,9 @@
 namespace clog {
 
 /// Walls with a tension that differs from that of the interface, and walls that hold the ends of wetted arcs.
-/// The tension is Gamma far from a wall, and that of the wetted wall where contact begins. In between, it
-/// changes by a smooth step, which keeps energy and force continuous. The step is so wide that the edges
-/// resolve it.
+/// Far from a wall the tension is Gamma. Where contact begins, it is the tension of the wetted wall. In
+/// between, it changes by a smooth step, which keeps energy and force continuous. The step is so wide that
+/// the edges resolve it.
 class WettedWalls {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -37,8 +37,8 @@ class WettedWalls {
     std::vector<int> vertices;  ///< the vertices on which these forces may differ from 0
     ContactLine::Ends ends;     ///< ends of wetted arcs
 
-    /// The sum of `spreading`. Its reaction acts on the liquid, so this sum is subtracted from the weight
-    /// that acts on the area.
+    /// The sum of `spreading`. The reaction to these forces acts on the liquid, so this sum is subtracted
+    /// from the weight that acts on the area.
     Eigen::Array2d net_spreading{0, 0};
 
     explicit Forces(int num_vertices);
