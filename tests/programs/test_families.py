@@ -15,6 +15,7 @@ from support import BIN, FAMILIES, SNAPSHOT_OF_A_DAUGHTER, TIMING, SweepTest, sh
 
 import clogsweep
 from clogsweep.drawing import families
+from clogsweep.tools.errors import UserError
 
 # Families with runs that take seconds, so that they have snapshots of ancestors and of daughters.
 LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
@@ -38,6 +39,14 @@ class Families(SweepTest, Analysis):
         """The table's line for a droplet of the youngest generation that was followed."""
         followed = self.droplets[self.droplets.status != "small"]
         return max(followed.itertuples(), key=lambda member: len(member.path))
+
+    def sweep_device(self, *words):
+        """Makes d.h5, a sweep of a device with an exit."""
+        self.write("posts.csv", "x,y,diameter\n" + "".join(
+            f"{x},{2 * y + 0.5 + x // 2 % 2},0.3\n" for x in range(4, 12, 2) for y in range(10)))
+        self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
+                     "line-tension=0.05", "vertices=64", "obstacles=posts.csv", "box=20", "length=20", "exit=15",
+                     "release=entrance", "max-time=2000", *words, "--quiet", "--output", "d.h5")
 
     def test_the_area_of_each_family_is_that_of_its_ancestor(self):
         rows = table(self.folder / "s.h5")
@@ -235,11 +244,7 @@ class Families(SweepTest, Analysis):
         self.assertEqual([line["distance"] for line in lines["groups"][0]["families"]["lines"]][:2], [3, 7])
 
     def test_the_exit_of_a_device_is_a_line(self):
-        (self.folder / "posts.csv").write_text("x,y,diameter\n" + "".join(
-            f"{x},{2 * y + 0.5 + x // 2 % 2},0.3\n" for x in range(4, 12, 2) for y in range(10)))
-        self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
-                     "line-tension=0.05", "vertices=64", "obstacles=posts.csv", "box=20", "length=20", "exit=15",
-                     "release=entrance", "max-time=2000", "seeds=1..6", "--quiet", "--output", "d.h5")
+        self.sweep_device("seeds=1..6")
         group, = json.loads(self.succeed("clogfit", "d.h5", "--format", "json").stdout)["groups"]
         line = next(line for line in group["families"]["lines"] if line["distance"] == 15)
         found = droplets(self.folder / "d.h5")
@@ -268,6 +273,13 @@ class Families(SweepTest, Analysis):
         for words, said in ([["--outlet", "7mm"], "diameter is not known"], [["--task", 99], "has no family"],
                             [["--film", "g.gif"], "missing --task"]):
             self.refuse_analysis("daughters", "s.h5", "--programs", BIN, *words, "--output", "x", words=[said])
+
+    def test_an_error_does_not_end_a_list_of_tasks_before_the_last_one(self):
+        table_of_droplets = pandas.DataFrame({"task": [*range(60), 0], "path": ""})
+        with self.assertRaisesRegex(UserError, "its tasks with one are 0, 1, .*, 18, 19 and 40 more$"):
+            families.family_of(table_of_droplets, 999, "s.h5")
+        with self.assertRaisesRegex(UserError, "its tasks with one are 0, 1, .*, 18, 19$"):
+            families.family_of(table_of_droplets[table_of_droplets.task < 20], 999, "s.h5")
 
     def test_families_of_several_diameters_are_drawn_in_millimetres(self):
         self.write("lab.cfg", "diameter = 0.8 mm, 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")

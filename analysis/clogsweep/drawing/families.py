@@ -167,7 +167,8 @@ def family_of(droplets: pandas.DataFrame, task: int, source: AnyPath, remedy: st
     if family.empty:
         known = sorted(set(droplets.task))
         if known:
-            remedy = f"its tasks with one are {', '.join(map(str, known[:20]))}"
+            more = f" and {len(known) - 20} more" if len(known) > 20 else ""
+            remedy = f"its tasks with one are {', '.join(map(str, known[:20]))}{more}"
         raise UserError(f"task {task} of {source} has no family that has ended; "
                         f"{remedy or 'run the sweep with break-up=daughters, or resume it'}")
     return family
