@@ -274,6 +274,17 @@ class Families(SweepTest, Analysis):
                             [["--film", "g.gif"], "missing --task"]):
             self.refuse_analysis("daughters", "s.h5", "--programs", BIN, *words, "--output", "x", words=[said])
 
+    def test_an_error_about_an_outlet_names_the_option_outlet(self):
+        self.sweep_device("seeds=1")
+        for place, words in (("40", ["invalid --outlet=40sigma (behind the exit at x = 15 sigma"]),
+                             ("0", ["--outlet", "invalid value: 0", "must be", "1e-06"]), ("0mm", ["--outlet"])):
+            with self.subTest(place=place):
+                done = self.analyse("daughters", "d.h5", "--programs", BIN, "--outlet", place, "--output", "x")
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertNotIn("--lines", done.stderr)
+                for word in words:
+                    self.assertIn(word, done.stderr)
+
     def test_an_error_does_not_end_a_list_of_tasks_before_the_last_one(self):
         table_of_droplets = pandas.DataFrame({"task": [*range(60), 0], "path": ""})
         with self.assertRaisesRegex(UserError, "its tasks with one are 0, 1, .*, 18, 19 and 40 more$"):

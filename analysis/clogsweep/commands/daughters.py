@@ -28,7 +28,7 @@ from . import command_line
 
 def outlet(word: str) -> families.Outlet:
     unit = next((unit for unit in ("mm", "sigma") if word.endswith(unit)), "")
-    place = command_line.between(0, 1e7, "a distance in sigma, or in mm such as 100mm")(word.removesuffix(unit))
+    place = command_line.between(1e-6, 1e7, "a distance in sigma, or in mm such as 100mm")(word.removesuffix(unit))
     return families.Outlet(place, unit or "sigma")
 
 
@@ -75,8 +75,7 @@ def body() -> int:
         if groups.are_in_mm and not asked:
             asked = families.common_outlet(members)
         if asked:
-            for group in members:
-                asked.of(group)  # refuses a place in mm if a diameter is not known
+            asked.refuse_behind_exits(groups.members)
             fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{asked.place:.17g}{asked.unit}"))
             groups = fit.known.finished(arguments.sweep)
         figure = families.draw(groups, asked, arguments.sweep)

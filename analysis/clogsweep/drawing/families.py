@@ -49,6 +49,14 @@ class Outlet:
                             "give the outlet in droplet diameters, or add --lab FILE")
         return self.place / length
 
+    def refuse_behind_exits(self, groups: Sequence[Group]) -> None:
+        """@throws UserError  if the place is behind the exit of a device"""
+        for group in groups:
+            exit_place = group.get("in_table", group).get("exit") or math.inf  # [sigma]
+            if self.of(group) > exit_place * (1 + 1e-9):  # A place in mm is rounded.
+                raise UserError(f"invalid --outlet={self.place:g}{self.unit} (behind the exit at x = {exit_place:g} sigma, "
+                                "where runs end) give a place up to the exit of every device")
+
     def line(self, group: Group) -> dict[str, Any] | None:
         """The group's line at this place."""
         place = self.of(group)
