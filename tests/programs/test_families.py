@@ -274,6 +274,22 @@ class Families(SweepTest, Analysis):
                             [["--film", "g.gif"], "missing --task"]):
             self.refuse_analysis("daughters", "s.h5", "--programs", BIN, *words, "--output", "x", words=[said])
 
+    def test_export_writes_the_droplets_into_a_second_file(self):
+        for ending in ("csv", "h5"):
+            printed = self.draw("export", "s.h5", f"rows.{ending}", "--programs", BIN).stdout
+            self.assertEqual(printed, f"rows.{ending}\nrows-droplets.{ending}\n")
+        read = pandas.read_csv(self.folder / "rows-droplets.csv", converters={"path": str}, float_precision="round_trip")
+        self.assertIn("birth_distance [sigma]", read)
+        same = self.droplets.assign(mechanism=self.droplets.mechanism.replace("", np.nan))
+        pandas.testing.assert_frame_equal(read.set_axis(same.columns, axis=1), same, check_exact=True)
+        with h5py.File(self.folder / "rows-droplets.h5") as file:
+            self.assertEqual(file["path"].asstr()[:].tolist(), self.droplets.path.tolist())
+            self.assertEqual(file["end_time"].attrs["unit"], "t0")
+        self.refuse_analysis("export", "s.h5", "rows-droplets.csv", "--programs", BIN, words=["will not overwrite"])
+        (self.folder / "rows.csv").unlink()
+        self.refuse_analysis("export", "s.h5", "rows.csv", "--programs", BIN, words=["will not overwrite rows-droplets.csv"])
+        self.assertFalse((self.folder / "rows.csv").exists(), "one file without the other")
+
     def test_an_error_about_an_outlet_names_the_option_outlet(self):
         self.sweep_device("seeds=1")
         for place, words in (("40", ["invalid --outlet=40sigma (behind the exit at x = 15 sigma"]),
