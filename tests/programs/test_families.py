@@ -226,6 +226,10 @@ class Families(SweepTest, Analysis):
             self.assertAlmostEqual(sum(line["passed"]["areas"]), line["passed"]["area"], places=12)
         self.assertIn("not known", self.succeed("clogfit", "s.h5").stdout)
 
+    def test_the_json_of_a_fit_has_the_units_of_families(self):
+        units = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["units"]
+        self.assertEqual(units["families"], {"diameter_class": "sigma", "distance": "sigma", "mean_diameter": "sigma"})
+
     def test_more_lines_are_counted_as_pandas_counts_them(self):
         """A droplet that passes a line counts at this line, but its daughters do not count there again."""
         lines = json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines", "3,7").stdout)
