@@ -45,8 +45,8 @@ class Families(SweepTest, Analysis):
         self.write("posts.csv", "x,y,diameter\n" + "".join(
             f"{x},{2 * y + 0.5 + x // 2 % 2},0.3\n" for x in range(4, 12, 2) for y in range(10)))
         self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
-                     "line-tension=0.05", "vertices=64", "obstacles=posts.csv", "box=20", "length=20", "exit=15",
-                     "release=entrance", "max-time=2000", *words, "--quiet", "--output", "d.h5")
+                     "vertices=64", "obstacles=posts.csv", "box=20", "length=20", "release=entrance", "max-time=2000",
+                     *words, "--quiet", "--output", "d.h5")
 
     def test_the_area_of_each_family_is_that_of_its_ancestor(self):
         rows = table(self.folder / "s.h5")
@@ -248,7 +248,7 @@ class Families(SweepTest, Analysis):
         self.assertEqual([line["distance"] for line in lines["groups"][0]["families"]["lines"]][:2], [3, 7])
 
     def test_the_exit_of_a_device_is_a_line(self):
-        self.sweep_device("seeds=1..6")
+        self.sweep_device("line-tension=0.05", "exit=15", "seeds=1..6")
         group, = json.loads(self.succeed("clogfit", "d.h5", "--format", "json").stdout)["groups"]
         line = next(line for line in group["families"]["lines"] if line["distance"] == 15)
         found = droplets(self.folder / "d.h5")
@@ -295,7 +295,7 @@ class Families(SweepTest, Analysis):
         self.assertFalse((self.folder / "rows.csv").exists(), "one file without the other")
 
     def test_an_error_about_an_outlet_names_the_option_outlet(self):
-        self.sweep_device("seeds=1")
+        self.sweep_device("line-tension=0.05", "exit=15", "seeds=1")
         for place, words in (("40", ["invalid --outlet=40sigma (behind the exit at x = 15 sigma"]),
                              ("0", ["--outlet", "invalid value: 0", "must be", "1e-06"]), ("0mm", ["--outlet"])):
             with self.subTest(place=place):
@@ -336,6 +336,16 @@ class Families(SweepTest, Analysis):
         table_of_families = self.succeed("clogfit", "two.h5", "--lines", "6mm").stdout.split("droplets per ancestor")[1]
         self.assertIn("mean d/mm", table_of_families)
         self.refuse("clogfit", "two.h5", "--lines", "6s", words=["invalid --lines=6s", "unknown unit 's' for length"])
+
+    def test_the_legend_covers_no_bar(self):
+        self.sweep_device("line-tension=0.05,0.4", "exit=15", "seeds=1,2")
+        figure = families.draw(clogsweep.open(self.folder / "d.h5", BIN).fit().known, None, "d.h5")
+        figure.draw_without_rendering()
+        sizes = figure.axes[2]
+        box = sizes.get_legend().get_window_extent()
+        curves = [line.get_transform().transform_path(line.get_path()) for line in sizes.lines if len(line.get_xdata())]
+        self.assertEqual(len(curves), 2)
+        self.assertFalse(any(curve.intersects_bbox(box, filled=False) for curve in curves))
 
     def test_notes_do_not_call_a_known_fate_unknown(self):
         space = "\N{NO-BREAK SPACE}"

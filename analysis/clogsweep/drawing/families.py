@@ -133,8 +133,9 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
         at_outlet = outlet.line(group)
         if at_outlet:
             numbers = at_outlet["passed"]["numbers"]
-            sizes.stairs(numbers, np.arange(len(numbers) + 1) * width * scales[index], color=colour, linewidth=1.6,
-                         label=label)
+            edges = np.arange(len(numbers) + 1) * width * scales[index]
+            # Legends avoid a line but not stairs().
+            sizes.step([0, *edges], [0, *numbers, 0], where="post", color=colour, linewidth=1.6, label=label)
     for axes in (share, number):
         style.logarithmic_abscissa(axes, known)
     share.set_ylim(0, 1.05)
@@ -146,8 +147,7 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
     sizes.set_ylim(bottom=0)
     style.label(sizes, f"diameter {d}",
                 f"droplets per released droplet\nat {outlet}, in classes of ${width:g}\\,\\sigma$")
-    if any(groups.label_of(group) for group in members):
-        sizes.legend(frameon=False)
+    style.legend(sizes)
     if length := groups.laboratory.get("length_mm"):
         add_scale(sizes, "top", length, "diameter [mm]")
     unknown = [line["not_known"] for group in members if (line := outlet.line(group))]
