@@ -347,11 +347,24 @@ class Families(SweepTest, Analysis):
         self.assertEqual(len(curves), 2)
         self.assertFalse(any(curve.intersects_bbox(box, filled=False) for curve in curves))
 
+    def test_places_in_a_device_are_also_in_millimetres(self):
+        self.write("lab.cfg", "diameter = 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
+        self.sweep_device("--lab", "lab.cfg", "line-tension=0.05,0.4", "exit=15.25", "seeds=1,2")
+        figure = families.draw(clogsweep.open(self.folder / "d.h5", BIN).fit().known, None, "d.h5")
+        figure.draw_without_rendering()
+        for axes in figure.axes[:2]:
+            top, = axes.child_axes
+            self.assertEqual([tick.get_text() for tick in axes.get_xticklabels()], ["10", "15.25"])
+            self.assertEqual([tick.get_text() for tick in top.get_xticklabels()], ["16", "24.4"])
+            self.assertEqual(top.get_xlabel(), "place in the device [mm]")
+        words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text)).replace("\N{NO-BREAK SPACE}", " ")
+        self.assertEqual(words.count("at 15.25 σ (24.4 mm)"), 2, "the ordinate and the note")
+
     def test_notes_do_not_call_a_known_fate_unknown(self):
         space = "\N{NO-BREAK SPACE}"
-        self.assertEqual(families.fate_note(families.Outlet(50, "sigma"), 0),
+        self.assertEqual(families.fate_note(str(families.Outlet(50, "sigma")), 0),
                          f"at 50{space}σ the fate of the whole area is known")
-        self.assertEqual(families.fate_note(families.Outlet(7, "mm"), 0.0066),
+        self.assertEqual(families.fate_note(str(families.Outlet(7, "mm")), 0.0066),
                          f"at 7{space}mm the fate of at most 0.66 % of the area is not known")
 
     def test_keys_that_daughters_cannot_have_are_refused(self):

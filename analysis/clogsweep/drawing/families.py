@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
 
 from .. import style
 from ..labels.groups import Groups
@@ -20,6 +21,7 @@ from .lengths import add_scale
 if TYPE_CHECKING:
     import pandas
 
+PLACE = StrMethodFormatter("{x:.4g}")  # Places of exits have more digits than those of other lines.
 MOST_UNKNOWN = 0.1  # Largest share of the area that may have an unknown fate at the outlet.
 # style.DROPLET is the colour of a droplet that has not ended.
 END_COLOURS = {"clogged": style.COLOURS[3], "flowing": style.COLOURS[0], "passed": style.COLOURS[0],
@@ -37,6 +39,12 @@ class Outlet:
 
     def __str__(self) -> str:
         return f"{self.place:g}\N{NO-BREAK SPACE}{'σ' if self.unit == 'sigma' else self.unit}"
+
+    def with_mm(self, diameter: float | None) -> str:
+        """The place as text, also in mm if a place in diameters is converted. @param diameter  sigma [mm], if known"""
+        if not diameter or self.unit == "mm":
+            return str(self)
+        return f"{self} ({self.place * diameter:.4g}\N{NO-BREAK SPACE}mm)"
 
     def of(self, group: Group) -> float:
         """The place in diameters of the group's droplets. @throws UserError  if the place is in mm, and the diameter is
@@ -96,8 +104,9 @@ def common_outlet(members: Sequence[Group]) -> Outlet:
     return Outlet(min(outlet_of([group]).place * group["diameter_mm"] for group in members), "mm")
 
 
-def fate_note(outlet: Outlet, unknown: float) -> str:
-    """@param unknown  largest fraction of the area whose fate at the outlet is not known"""
+def fate_note(outlet: str, unknown: float) -> str:
+    """@param outlet  the line in words; @param unknown  largest fraction of the area whose fate at the line is not
+    known"""
     of_area = f"at most {100 * unknown:.2g} % of the area is not known" if unknown > 0 else "the whole area is known"
     return f"at {outlet} the fate of {of_area}"
 
@@ -138,23 +147,31 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
             sizes.step([0, *edges], [0, *numbers, 0], where="post", color=colour, linewidth=1.6, label=label)
     for axes in (share, number):
         style.logarithmic_abscissa(axes, known)
+        axes.xaxis.set_major_formatter(PLACE)
     share.set_ylim(0, 1.05)
     number.set_ylim(0, 1.05 * number.dataLim.ymax)
+    length = groups.laboratory.get("length_mm")
+    at_line = outlet.with_mm(length)
     place = "place in the device" if any(group.get("passages") for group in members) else "distance from the release"
     x, d = ("$x$ [mm]", "$d$ [mm]") if groups.are_in_mm else (r"$x/\sigma$", r"$d/\sigma$")
     style.label(share, f"{place} {x}", "share of the area that passes")
     style.label(number, f"{place} {x}", "droplets that pass, per released droplet")
     sizes.set_ylim(bottom=0)
     style.label(sizes, f"diameter {d}",
-                f"droplets per released droplet\nat {outlet}, in classes of ${width:g}\\,\\sigma$")
+                f"droplets per released droplet\nat {at_line}, in classes of ${width:g}\\,\\sigma$")
     style.legend(sizes)
-    if length := groups.laboratory.get("length_mm"):
+    if length:
         add_scale(sizes, "top", length, "diameter [mm]")
+        for axes in (share, number):
+            axis = add_scale(axes, "top", length, f"{place} [mm]")
+            axis.set_major_locator(FixedLocator([length * tick for tick in axes.get_xticks()]))
+            axis.set_minor_locator(NullLocator())
+            axis.set_major_formatter(PLACE)
     unknown = [line["not_known"] for group in members if (line := outlet.line(group))]
     style.notes_of_panels(figure, [
         "bars: intervals from resampled released droplets; a droplet passes when it, or one from which it descends, "
         "first crosses the line",
-        f"{fate_note(outlet, max(unknown, default=0))}; "
+        f"{fate_note(at_line, max(unknown, default=0))}; "
         f"hollow: of more than {100 * MOST_UNKNOWN:g} %, so more droplets may still pass"])
     return figure
 
