@@ -295,8 +295,10 @@ class Families(SweepTest, Analysis):
         self.assertFalse((self.folder / "rows.csv").exists(), "one file without the other")
 
     def test_an_error_about_an_outlet_names_the_option_outlet(self):
-        self.sweep_device("line-tension=0.05", "exit=15", "seeds=1")
-        for place, words in (("40", ["invalid --outlet=40sigma (behind the exit at x = 15 sigma"]),
+        self.write("lab.cfg", "diameter = 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
+        self.sweep_device("--lab", "lab.cfg", "line-tension=0.05", "exit=15", "seeds=1")
+        for place, words in (("25mm", ["invalid --outlet=25mm (behind the exit at x = 24 mm"]),
+                             ("40", ["invalid --outlet=40sigma (behind the exit at x = 15 sigma"]),
                              ("0", ["--outlet", "invalid value: 0", "must be", "1e-06"]), ("0mm", ["--outlet"])):
             with self.subTest(place=place):
                 done = self.analyse("daughters", "d.h5", "--programs", BIN, "--outlet", place, "--output", "x")

@@ -62,8 +62,9 @@ class Outlet:
         for group in groups:
             exit_place = group.get("in_table", group).get("exit") or math.inf  # [sigma]
             if self.of(group) > exit_place * (1 + 1e-9):  # A place in mm is rounded.
-                raise UserError(f"invalid --outlet={self.place:g}{self.unit} (behind the exit at x = {exit_place:g} sigma, "
-                                "where runs end) give a place up to the exit of every device")
+                raise UserError(f"invalid --outlet={self.place:g}{self.unit} (behind the exit at x = "
+                                f"{exit_place * self.place / self.of(group):g} {self.unit}, where runs end) "
+                                "give a place up to the exit of every device")
 
     def line(self, group: Group) -> dict[str, Any] | None:
         """The group's line at this place."""
