@@ -6,6 +6,7 @@ import signal
 import unittest
 
 import h5py
+import matplotlib.patches
 import matplotlib.text
 import numpy as np
 import pandas
@@ -282,7 +283,8 @@ class Families(SweepTest, Analysis):
         for ending in ("csv", "h5"):
             printed = self.draw("export", "s.h5", f"rows.{ending}", "--programs", BIN).stdout
             self.assertEqual(printed, f"rows.{ending}\nrows-droplets.{ending}\n")
-        read = pandas.read_csv(self.folder / "rows-droplets.csv", converters={"path": str}, float_precision="round_trip")
+        read = pandas.read_csv(self.folder / "rows-droplets.csv", converters={"path": str},
+                               float_precision="round_trip")
         self.assertIn("birth_distance [sigma]", read)
         same = self.droplets.assign(mechanism=self.droplets.mechanism.replace("", np.nan))
         pandas.testing.assert_frame_equal(read.set_axis(same.columns, axis=1), same, check_exact=True)
@@ -291,7 +293,8 @@ class Families(SweepTest, Analysis):
             self.assertEqual(file["end_time"].attrs["unit"], "t0")
         self.refuse_analysis("export", "s.h5", "rows-droplets.csv", "--programs", BIN, words=["will not overwrite"])
         (self.folder / "rows.csv").unlink()
-        self.refuse_analysis("export", "s.h5", "rows.csv", "--programs", BIN, words=["will not overwrite rows-droplets.csv"])
+        self.refuse_analysis("export", "s.h5", "rows.csv", "--programs", BIN,
+                             words=["will not overwrite rows-droplets.csv"])
         self.assertFalse((self.folder / "rows.csv").exists(), "one file without the other")
 
     def test_an_error_about_an_outlet_names_the_option_outlet(self):
@@ -359,8 +362,26 @@ class Families(SweepTest, Analysis):
             self.assertEqual([tick.get_text() for tick in axes.get_xticklabels()], ["10", "15.25"])
             self.assertEqual([tick.get_text() for tick in top.get_xticklabels()], ["16", "24.4"])
             self.assertEqual(top.get_xlabel(), "place in the device [mm]")
-        words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text)).replace("\N{NO-BREAK SPACE}", " ")
-        self.assertEqual(words.count("at 15.25 σ (24.4 mm)"), 2, "the ordinate and the note")
+        words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text))
+        self.assertEqual(words.replace("\N{NO-BREAK SPACE}", " ").count("at 15.25 σ (24.4 mm)"), 2,
+                         "the ordinate and the note")
+
+    def test_a_family_in_a_device_is_drawn_at_its_places_up_to_the_exit(self):
+        self.write("lab.cfg", "diameter = 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
+        self.sweep_device("--lab", "lab.cfg", "line-tension=0.05", "entrance=1", "exit=15", "seeds=1")
+        with h5py.File(self.folder / "d.h5") as file:
+            row = file["runs"][0]
+        family = droplets(self.folder / "d.h5")
+        axes, = families.draw_family(family, row, clogsweep.open(self.folder / "d.h5", BIN).fit().known).axes
+        bars = axes.findobj(matplotlib.patches.Rectangle)[:len(family)]
+        self.assertAlmostEqual(bars[0].get_x(), row["release_x"])
+        passed = family[family.status == "passed"]
+        self.assertTrue(len(passed))
+        for number in passed.index:
+            self.assertAlmostEqual(bars[number].get_x() + bars[number].get_width(), 15, delta=0.1)
+        self.assertIn("place in the device $x", axes.get_xlabel())
+        self.assertEqual(axes.child_axes[0].get_xlabel(), "place in the device [mm]")
+        self.assertEqual([list(line.get_xdata()) for line in axes.lines if line.get_label() == "exit"], [[15, 15]])
 
     def test_notes_do_not_call_a_known_fate_unknown(self):
         space = "\N{NO-BREAK SPACE}"

@@ -10,8 +10,8 @@ with its interval, and the number of droplets that pass per released droplet. Th
 diameters at the distance given by --outlet, where droplets leave the array; in a device, this is an x. With --task, the
 picture shows one family: a bar for each droplet, from its birth to its end, as thick as the droplet's diameter. With
 --film, all droplets of this family move in the array; each is replayed, the camera follows those that move, and those
-that clog stay. A droplet that was too small to be followed is a circle where it was born. The film is FILM.mp4 with
-ffmpeg, otherwise FILM.gif.
+that clog stay. A droplet that was too small to be followed is a circle where it was born. The exit of a device is a
+dashed line. The film is FILM.mp4 with ffmpeg, otherwise FILM.gif.
 """
 
 import argparse
@@ -62,13 +62,14 @@ def body() -> int:
     if arguments.film:
         return make_film(arguments)
     with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
-        droplets = stored.droplets(file)
+        droplets, rows = stored.droplets(file), file["runs"][:]
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
     options = command_line.lab_options(arguments)
     fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options))
     groups: Groups = fit.known.finished(arguments.sweep)
     if arguments.task is not None:
-        figure = families.draw_family(droplets, arguments.task, arguments.sweep, groups)
+        family = families.family_of(droplets, arguments.task, arguments.sweep, families.remedy_for(groups))
+        figure = families.draw_family(family, rows[rows["task"] == arguments.task][0], groups)
     else:
         members = families.with_families(groups, arguments.sweep)
         asked: families.Outlet | None = arguments.outlet

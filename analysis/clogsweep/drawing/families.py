@@ -14,6 +14,7 @@ from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
 
 from .. import style
 from ..labels.groups import Groups
+from ..reading import stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Group
 from .lengths import add_scale
@@ -28,6 +29,7 @@ END_COLOURS = {"clogged": style.COLOURS[3], "flowing": style.COLOURS[0], "passed
                "small": style.COLOURS[4], "failed": style.COLOURS[6], "broken": "0.6"}
 END_WORDS = {"clogged": "clogged", "flowing": "still moving", "passed": "passed the exit",
              "small": "too small, not followed", "failed": "failed", "broken": "broke up"}
+EXIT = {"color": "0.3", "linestyle": "--", "linewidth": 0.8}
 
 
 @dataclasses.dataclass
@@ -200,30 +202,50 @@ def family_of(droplets: pandas.DataFrame, task: int, source: AnyPath, remedy: st
     return family
 
 
-def draw_family(droplets: pandas.DataFrame, task: int, source: AnyPath, groups: Groups) -> Figure:
-    """Draws the droplets of one family as bars from birth to end. @throws UserError  if the run has no family"""
-    family = family_of(droplets, task, source, remedy_for(groups))
+def release_in_device(row: np.void) -> float | None:
+    """The x where the droplet of a row was released [sigma]. None: the run was not in a device (clogfit has the same
+    rule)."""
+    is_in_device = row["obstacle_filling"] == b"file" and (row["release"] == b"entrance" or row["exit"] > 0)
+    return float(row["release_x"]) if is_in_device else None
+
+
+def diameter_of(row: np.void, groups: Groups) -> float | None:
+    """sigma of the row's droplet [mm], if known"""
+    own = (group["laboratory_scale"]["length_mm"] for group in groups.members
+           if group.get("laboratory_scale") and group["laboratory"] == stored.text(row["laboratory"]))
+    return groups.laboratory.get("length_mm") or next(own, None)
+
+
+def draw_family(family: pandas.DataFrame, row: np.void, groups: Groups) -> Figure:
+    """Draws the droplets of one family as bars from birth to end. @param row  of the ancestor in the table of runs"""
+    release = release_in_device(row)
+    births, ends = (family[name] + (release or 0) for name in ("birth_distance", "end_distance"))
     heights = order_of(list(family.path))
-    figure, axes = style.subplots(figsize=(7.6, 1.6 + 0.45 * (max(heights.values()) - min(heights.values()) + 1)))
-    for member in family.itertuples():
+    lowest, highest = min(heights.values()), max(heights.values())
+    figure, axes = style.subplots(figsize=(7.6, 1.6 + 0.45 * (highest - lowest + 1)))
+    for member, birth, end in zip(family.itertuples(), births, np.maximum(births, ends)):
         height = heights[member.path]
-        end = max(member.end_distance, member.birth_distance)
-        axes.add_patch(Rectangle((member.birth_distance, height - 0.4 * member.diameter), end - member.birth_distance,
-                                 0.8 * member.diameter, facecolor=END_COLOURS[member.status], edgecolor="none"))
+        axes.add_patch(Rectangle((birth, height - 0.4 * member.diameter), end - birth, 0.8 * member.diameter,
+                                 facecolor=END_COLOURS[member.status], edgecolor="none"))
         axes.annotate(f"{member.diameter:.2f}", (end, height), xytext=(3, 0), textcoords="offset points", fontsize=7,
                       va="center")
         if member.status == "broken":
             for part in "01":
                 axes.plot([end, end], [height, heights[member.path + part]], color="0.6", linewidth=0.8, zorder=0)
-    axes.set_xlim(min(0.0, family.birth_distance.min()), 1.06 * family.end_distance.max())
-    axes.set_ylim(min(heights.values()) - 1.3, max(heights.values()) + 0.7)  # The legend is below the bars.
+    handles: list[Any] = [Rectangle((0, 0), 1, 1, facecolor=colour, label=END_WORDS[status])
+                          for status, colour in END_COLOURS.items() if status in set(family.status)]
+    last = ends.max()
+    if row["exit"] > 0:
+        handles += axes.plot([row["exit"]] * 2, [lowest - 0.6, highest + 0.7], label="exit", **EXIT)
+        last = max(last, row["exit"])
+    first = births.min()
+    axes.set_xlim(first, last + 0.06 * (last - first))
+    axes.set_ylim(lowest - 1.3, highest + 0.7)  # The legend is below the bars.
     axes.set_yticks([])
-    handles = [Rectangle((0, 0), 1, 1, facecolor=END_COLOURS[status]) for status in END_COLOURS
-               if status in set(family.status)]
-    axes.legend(handles, [END_WORDS[status] for status in END_COLOURS if status in set(family.status)], frameon=False,
-                fontsize=8, loc="lower right", ncols=len(handles))
-    axes.set_xlabel(r"displacement along gravity $r/\sigma$")
-    if length := groups.laboratory.get("length_mm"):
-        add_scale(axes, "top", length, "displacement [mm]")
-    style.notes(axes, [f"task {task}: each bar is a droplet, as thick as its diameter, which is beside it"])
+    axes.legend(handles=handles, frameon=False, fontsize=8, loc="lower right", ncols=len(handles))
+    words = "displacement along gravity" if release is None else "place in the device"
+    axes.set_xlabel(rf"{words} ${'r' if release is None else 'x'}/\sigma$")
+    if diameter := diameter_of(row, groups):
+        add_scale(axes, "top", diameter, f"{words} [mm]")
+    style.notes(axes, [f"task {row['task']}: each bar is a droplet, as thick as its diameter, which is beside it"])
     return figure
