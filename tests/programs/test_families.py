@@ -15,7 +15,8 @@ from drawing import Analysis
 from support import BIN, FAMILIES, SNAPSHOT_OF_A_DAUGHTER, TIMING, SweepTest, shared_sweep, table
 
 import clogsweep
-from clogsweep.drawing import families
+from clogsweep.drawing import families, family_film
+from clogsweep.reading import trajectory
 from clogsweep.tools.errors import UserError
 
 # Families with runs that take seconds, so that they have snapshots of ancestors and of daughters.
@@ -382,6 +383,18 @@ class Families(SweepTest, Analysis):
         self.assertIn("place in the device $x", axes.get_xlabel())
         self.assertEqual(axes.child_axes[0].get_xlabel(), "place in the device [mm]")
         self.assertEqual([list(line.get_xdata()) for line in axes.lines if line.get_label() == "exit"], [[15, 15]])
+
+    def test_a_film_of_a_family_draws_the_exit_of_the_device(self):
+        self.sweep_device("line-tension=0.05", "entrance=1", "exit=15", "seeds=1")
+        family = droplets(self.folder / "d.h5")
+        motions = family_film.motions_of(BIN / "clogrun", self.folder / "d.h5", family, family.end_time.max() / 50)
+        shown = family_film.FamilyFilm(motions, 5, 20, "540p", exit_distance=14)
+        place, = {float(x) for line in shown.figure.axes[0].lines for x in line.get_xdata()}
+        for motion in motions:
+            if motion.member.status == "passed":
+                last = motion.outline_at(motion.member.end_time)
+                self.assertAlmostEqual(trajectory.centroids(last[None])[0, 0], place, delta=0.3)
+        self.draw("daughters", "d.h5", "--programs", BIN, "--task", 0, "--frames", 5, "--film", "f.gif")
 
     def test_notes_do_not_call_a_known_fate_unknown(self):
         space = "\N{NO-BREAK SPACE}"

@@ -48,10 +48,12 @@ def make_film(arguments: argparse.Namespace) -> int:
         raise UserError("missing --task; a film shows the family of one run")
     path = film.path_of(arguments.film)
     with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
-        family = families.family_of(stored.droplets(file), arguments.task, arguments.sweep)
+        family, rows = families.family_of(stored.droplets(file), arguments.task, arguments.sweep), file["runs"][:]
     clogrun = programs.programs_in(arguments.programs) / "clogrun"
     motions = family_film.motions_of(clogrun, arguments.sweep, family, family.end_time.max() / arguments.frames)
-    moving = family_film.FamilyFilm(motions, arguments.frames, arguments.rate, film.size_for(path))
+    row = rows[rows["task"] == arguments.task][0]
+    exit_distance = row["exit"] - row["release_x"] if row["exit"] > 0 else None
+    moving = family_film.FamilyFilm(motions, arguments.frames, arguments.rate, film.size_for(path), exit_distance)
     command_line.tell(film.write_film(moving, path, arguments.rate))
     return 0
 
