@@ -298,6 +298,22 @@ class Families(SweepTest, Analysis):
                              words=["will not overwrite rows-droplets.csv"])
         self.assertFalse((self.folder / "rows.csv").exists(), "one file without the other")
 
+    def test_a_report_does_not_deny_clogs_that_it_does_not_show(self):
+        self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
+                     "obstacle-density=saturated", "line-tension=0.1,0.2", "vertices=64", "box=20", "max-time=1500",
+                     "seeds=3", "--quiet", "--output", "c.h5")
+        found = droplets(self.folder / "c.h5")
+        clogged = found[found.status == "clogged"]
+        self.assertEqual([set(clogged.task[clogged.path == path]) for path in ("", "0", "1")], [{1}, {0}, {0}])
+        for name, words in (("line_tension=0.1", "No released droplet has clogged, but daughters have"),
+                            ("line_tension=0.2", "")):
+            self.succeed("clogsweep", "select", "c.h5", name, "--output", "one.h5")
+            self.draw("report", "one.h5", "--programs", BIN, "--examples", 0 if not words else 4)
+            page = (self.folder / "one-report.html").read_text()
+            self.assertIn(words, page)
+            self.assertNotIn("No polygon has clogged", page)
+            (self.folder / "one.h5").unlink()
+
     def test_an_error_about_an_outlet_names_the_option_outlet(self):
         self.write("lab.cfg", "diameter = 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
         self.sweep_device("--lab", "lab.cfg", "line-tension=0.05", "exit=15", "seeds=1")
