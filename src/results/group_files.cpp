@@ -57,6 +57,8 @@ Json field_units(const std::vector<Group>& groups) {
       if (!field.unit.empty()) all[field.name] = field.unit;
   all["survival"] = all["incidence"] = {{"distance", "sigma"}};
   all["censored_distances"] = "sigma";
+  if (have_families(groups))
+    all["families"] = {{"diameter_class", "sigma"}, {"distance", "sigma"}, {"mean_diameter", "sigma"}};
   return all;
 }
 

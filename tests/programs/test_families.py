@@ -6,6 +6,7 @@ import signal
 import unittest
 
 import h5py
+import matplotlib.patches
 import matplotlib.text
 import numpy as np
 import pandas
@@ -14,7 +15,9 @@ from drawing import Analysis
 from support import BIN, FAMILIES, SNAPSHOT_OF_A_DAUGHTER, TIMING, SweepTest, shared_sweep, table
 
 import clogsweep
-from clogsweep.drawing import families
+from clogsweep.drawing import families, family_film
+from clogsweep.reading import trajectory
+from clogsweep.tools.errors import UserError
 
 # Families with runs that take seconds, so that they have snapshots of ancestors and of daughters.
 LONG = [word.replace("max-time=700", "max-time=6000") for word in FAMILIES]
@@ -38,6 +41,14 @@ class Families(SweepTest, Analysis):
         """The table's line for a droplet of the youngest generation that was followed."""
         followed = self.droplets[self.droplets.status != "small"]
         return max(followed.itertuples(), key=lambda member: len(member.path))
+
+    def sweep_device(self, *words):
+        """Makes d.h5, a sweep of a device with an exit."""
+        self.write("posts.csv", "x,y,diameter\n" + "".join(
+            f"{x},{2 * y + 0.5 + x // 2 % 2},0.3\n" for x in range(4, 12, 2) for y in range(10)))
+        self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
+                     "vertices=64", "obstacles=posts.csv", "box=20", "length=20", "release=entrance", "max-time=2000",
+                     *words, "--quiet", "--output", "d.h5")
 
     def test_the_area_of_each_family_is_that_of_its_ancestor(self):
         rows = table(self.folder / "s.h5")
@@ -217,6 +228,10 @@ class Families(SweepTest, Analysis):
             self.assertAlmostEqual(sum(line["passed"]["areas"]), line["passed"]["area"], places=12)
         self.assertIn("not known", self.succeed("clogfit", "s.h5").stdout)
 
+    def test_the_json_of_a_fit_has_the_units_of_families(self):
+        units = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["units"]
+        self.assertEqual(units["families"], {"diameter_class": "sigma", "distance": "sigma", "mean_diameter": "sigma"})
+
     def test_more_lines_are_counted_as_pandas_counts_them(self):
         """A droplet that passes a line counts at this line, but its daughters do not count there again."""
         lines = json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lines", "3,7").stdout)
@@ -235,11 +250,7 @@ class Families(SweepTest, Analysis):
         self.assertEqual([line["distance"] for line in lines["groups"][0]["families"]["lines"]][:2], [3, 7])
 
     def test_the_exit_of_a_device_is_a_line(self):
-        (self.folder / "posts.csv").write_text("x,y,diameter\n" + "".join(
-            f"{x},{2 * y + 0.5 + x // 2 % 2},0.3\n" for x in range(4, 12, 2) for y in range(10)))
-        self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
-                     "line-tension=0.05", "vertices=64", "obstacles=posts.csv", "box=20", "length=20", "exit=15",
-                     "release=entrance", "max-time=2000", "seeds=1..6", "--quiet", "--output", "d.h5")
+        self.sweep_device("line-tension=0.05", "exit=15", "seeds=1..6")
         group, = json.loads(self.succeed("clogfit", "d.h5", "--format", "json").stdout)["groups"]
         line = next(line for line in group["families"]["lines"] if line["distance"] == 15)
         found = droplets(self.folder / "d.h5")
@@ -269,6 +280,60 @@ class Families(SweepTest, Analysis):
                             [["--film", "g.gif"], "missing --task"]):
             self.refuse_analysis("daughters", "s.h5", "--programs", BIN, *words, "--output", "x", words=[said])
 
+    def test_export_writes_the_droplets_into_a_second_file(self):
+        for ending in ("csv", "h5"):
+            printed = self.draw("export", "s.h5", f"rows.{ending}", "--programs", BIN).stdout
+            self.assertEqual(printed, f"rows.{ending}\nrows-droplets.{ending}\n")
+        read = pandas.read_csv(self.folder / "rows-droplets.csv", converters={"path": str},
+                               float_precision="round_trip")
+        self.assertIn("birth_distance [sigma]", read)
+        same = self.droplets.assign(mechanism=self.droplets.mechanism.replace("", np.nan))
+        pandas.testing.assert_frame_equal(read.set_axis(same.columns, axis=1), same, check_exact=True)
+        with h5py.File(self.folder / "rows-droplets.h5") as file:
+            self.assertEqual(file["path"].asstr()[:].tolist(), self.droplets.path.tolist())
+            self.assertEqual(file["end_time"].attrs["unit"], "t0")
+        self.refuse_analysis("export", "s.h5", "rows-droplets.csv", "--programs", BIN, words=["will not overwrite"])
+        (self.folder / "rows.csv").unlink()
+        self.refuse_analysis("export", "s.h5", "rows.csv", "--programs", BIN,
+                             words=["will not overwrite rows-droplets.csv"])
+        self.assertFalse((self.folder / "rows.csv").exists(), "one file without the other")
+
+    def test_a_report_does_not_deny_clogs_that_it_does_not_show(self):
+        self.succeed("clogsweep", "break-up=daughters", "break-up-neck=0.08", "self-contact-range=0.02",
+                     "obstacle-density=saturated", "line-tension=0.1,0.2", "vertices=64", "box=20", "max-time=1500",
+                     "seeds=3", "--quiet", "--output", "c.h5")
+        found = droplets(self.folder / "c.h5")
+        clogged = found[found.status == "clogged"]
+        self.assertEqual([set(clogged.task[clogged.path == path]) for path in ("", "0", "1")], [{1}, {0}, {0}])
+        for name, words in (("line_tension=0.1", "No released droplet has clogged, but daughters have"),
+                            ("line_tension=0.2", "")):
+            self.succeed("clogsweep", "select", "c.h5", name, "--output", "one.h5")
+            self.draw("report", "one.h5", "--programs", BIN, "--examples", 0 if not words else 4)
+            page = (self.folder / "one-report.html").read_text()
+            self.assertIn(words, page)
+            self.assertNotIn("No polygon has clogged", page)
+            (self.folder / "one.h5").unlink()
+
+    def test_an_error_about_an_outlet_names_the_option_outlet(self):
+        self.write("lab.cfg", "diameter = 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
+        self.sweep_device("--lab", "lab.cfg", "line-tension=0.05", "exit=15", "seeds=1")
+        for place, words in (("25mm", ["invalid --outlet=25mm (behind the exit at x = 24 mm"]),
+                             ("40", ["invalid --outlet=40sigma (behind the exit at x = 15 sigma"]),
+                             ("0", ["--outlet", "invalid value: 0", "must be", "1e-06"]), ("0mm", ["--outlet"])):
+            with self.subTest(place=place):
+                done = self.analyse("daughters", "d.h5", "--programs", BIN, "--outlet", place, "--output", "x")
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertNotIn("--lines", done.stderr)
+                for word in words:
+                    self.assertIn(word, done.stderr)
+
+    def test_an_error_does_not_end_a_list_of_tasks_before_the_last_one(self):
+        table_of_droplets = pandas.DataFrame({"task": [*range(60), 0], "path": ""})
+        with self.assertRaisesRegex(UserError, "its tasks with one are 0, 1, .*, 18, 19 and 40 more$"):
+            families.family_of(table_of_droplets, 999, "s.h5")
+        with self.assertRaisesRegex(UserError, "its tasks with one are 0, 1, .*, 18, 19$"):
+            families.family_of(table_of_droplets[table_of_droplets.task < 20], 999, "s.h5")
+
     def test_families_of_several_diameters_are_drawn_in_millimetres(self):
         self.write("lab.cfg", "diameter = 0.8 mm, 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
         self.succeed("clogsweep", "--lab", "lab.cfg", "obstacle-gap=0.3mm", "obstacle-diameter=0.24mm",
@@ -294,11 +359,64 @@ class Families(SweepTest, Analysis):
         self.assertIn("mean d/mm", table_of_families)
         self.refuse("clogfit", "two.h5", "--lines", "6s", words=["invalid --lines=6s", "unknown unit 's' for length"])
 
+    def test_the_legend_covers_no_bar(self):
+        self.sweep_device("line-tension=0.05,0.4", "exit=15", "seeds=1,2")
+        figure = families.draw(clogsweep.open(self.folder / "d.h5", BIN).fit().known, None, "d.h5")
+        figure.draw_without_rendering()
+        sizes = figure.axes[2]
+        box = sizes.get_legend().get_window_extent()
+        curves = [line.get_transform().transform_path(line.get_path()) for line in sizes.lines if len(line.get_xdata())]
+        self.assertEqual(len(curves), 2)
+        self.assertFalse(any(curve.intersects_bbox(box, filled=False) for curve in curves))
+
+    def test_places_in_a_device_are_also_in_millimetres(self):
+        self.write("lab.cfg", "diameter = 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
+        self.sweep_device("--lab", "lab.cfg", "line-tension=0.05,0.4", "exit=15.25", "seeds=1,2")
+        figure = families.draw(clogsweep.open(self.folder / "d.h5", BIN).fit().known, None, "d.h5")
+        figure.draw_without_rendering()
+        for axes in figure.axes[:2]:
+            top, = axes.child_axes
+            self.assertEqual([tick.get_text() for tick in axes.get_xticklabels()], ["10", "15.25"])
+            self.assertEqual([tick.get_text() for tick in top.get_xticklabels()], ["16", "24.4"])
+            self.assertEqual(top.get_xlabel(), "place in the device [mm]")
+        words = " ".join(text.get_text() for text in figure.findobj(matplotlib.text.Text))
+        self.assertEqual(words.replace("\N{NO-BREAK SPACE}", " ").count("at 15.25 σ (24.4 mm)"), 2,
+                         "the ordinate and the note")
+
+    def test_a_family_in_a_device_is_drawn_at_its_places_up_to_the_exit(self):
+        self.write("lab.cfg", "diameter = 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
+        self.sweep_device("--lab", "lab.cfg", "line-tension=0.05", "entrance=1", "exit=15", "seeds=1")
+        with h5py.File(self.folder / "d.h5") as file:
+            row = file["runs"][0]
+        family = droplets(self.folder / "d.h5")
+        axes, = families.draw_family(family, row, clogsweep.open(self.folder / "d.h5", BIN).fit().known).axes
+        bars = axes.findobj(matplotlib.patches.Rectangle)[:len(family)]
+        self.assertAlmostEqual(bars[0].get_x(), row["release_x"])
+        passed = family[family.status == "passed"]
+        self.assertTrue(len(passed))
+        for number in passed.index:
+            self.assertAlmostEqual(bars[number].get_x() + bars[number].get_width(), 15, delta=0.1)
+        self.assertIn("place in the device $x", axes.get_xlabel())
+        self.assertEqual(axes.child_axes[0].get_xlabel(), "place in the device [mm]")
+        self.assertEqual([list(line.get_xdata()) for line in axes.lines if line.get_label() == "exit"], [[15, 15]])
+
+    def test_a_film_of_a_family_draws_the_exit_of_the_device(self):
+        self.sweep_device("line-tension=0.05", "entrance=1", "exit=15", "seeds=1")
+        family = droplets(self.folder / "d.h5")
+        motions = family_film.motions_of(BIN / "clogrun", self.folder / "d.h5", family, family.end_time.max() / 50)
+        shown = family_film.FamilyFilm(motions, 5, 20, "540p", exit_distance=14)
+        place, = {float(x) for line in shown.figure.axes[0].lines for x in line.get_xdata()}
+        for motion in motions:
+            if motion.member.status == "passed":
+                last = motion.outline_at(motion.member.end_time)
+                self.assertAlmostEqual(trajectory.centroids(last[None])[0, 0], place, delta=0.3)
+        self.draw("daughters", "d.h5", "--programs", BIN, "--task", 0, "--frames", 5, "--film", "f.gif")
+
     def test_notes_do_not_call_a_known_fate_unknown(self):
         space = "\N{NO-BREAK SPACE}"
-        self.assertEqual(families.fate_note(families.Outlet(50, "sigma"), 0),
+        self.assertEqual(families.fate_note(str(families.Outlet(50, "sigma")), 0),
                          f"at 50{space}σ the fate of the whole area is known")
-        self.assertEqual(families.fate_note(families.Outlet(7, "mm"), 0.0066),
+        self.assertEqual(families.fate_note(str(families.Outlet(7, "mm")), 0.0066),
                          f"at 7{space}mm the fate of at most 0.66 % of the area is not known")
 
     def test_keys_that_daughters_cannot_have_are_refused(self):

@@ -10,8 +10,8 @@ with its interval, and the number of droplets that pass per released droplet. Th
 diameters at the distance given by --outlet, where droplets leave the array; in a device, this is an x. With --task, the
 picture shows one family: a bar for each droplet, from its birth to its end, as thick as the droplet's diameter. With
 --film, all droplets of this family move in the array; each is replayed, the camera follows those that move, and those
-that clog stay. A droplet that was too small to be followed is a circle where it was born. The film is FILM.mp4 with
-ffmpeg, otherwise FILM.gif.
+that clog stay. A droplet that was too small to be followed is a circle where it was born. The exit of a device is a
+dashed line. The film is FILM.mp4 with ffmpeg, otherwise FILM.gif.
 """
 
 import argparse
@@ -28,7 +28,7 @@ from . import command_line
 
 def outlet(word: str) -> families.Outlet:
     unit = next((unit for unit in ("mm", "sigma") if word.endswith(unit)), "")
-    place = command_line.between(0, 1e7, "a distance in sigma, or in mm such as 100mm")(word.removesuffix(unit))
+    place = command_line.between(1e-6, 1e7, "a distance in sigma, or in mm such as 100mm")(word.removesuffix(unit))
     return families.Outlet(place, unit or "sigma")
 
 
@@ -48,10 +48,12 @@ def make_film(arguments: argparse.Namespace) -> int:
         raise UserError("missing --task; a film shows the family of one run")
     path = film.path_of(arguments.film)
     with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
-        family = families.family_of(stored.droplets(file), arguments.task, arguments.sweep)
+        family, rows = families.family_of(stored.droplets(file), arguments.task, arguments.sweep), file["runs"][:]
     clogrun = programs.programs_in(arguments.programs) / "clogrun"
     motions = family_film.motions_of(clogrun, arguments.sweep, family, family.end_time.max() / arguments.frames)
-    moving = family_film.FamilyFilm(motions, arguments.frames, arguments.rate, film.size_for(path))
+    row = rows[rows["task"] == arguments.task][0]
+    exit_distance = row["exit"] - row["release_x"] if row["exit"] > 0 else None
+    moving = family_film.FamilyFilm(motions, arguments.frames, arguments.rate, film.size_for(path), exit_distance)
     command_line.tell(film.write_film(moving, path, arguments.rate))
     return 0
 
@@ -62,21 +64,21 @@ def body() -> int:
     if arguments.film:
         return make_film(arguments)
     with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs) as file:
-        droplets = stored.droplets(file)
+        droplets, rows = stored.droplets(file), file["runs"][:]
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
     options = command_line.lab_options(arguments)
     fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options))
     groups: Groups = fit.known.finished(arguments.sweep)
     if arguments.task is not None:
-        figure = families.draw_family(droplets, arguments.task, arguments.sweep, groups)
+        family = families.family_of(droplets, arguments.task, arguments.sweep, families.remedy_for(groups))
+        figure = families.draw_family(family, rows[rows["task"] == arguments.task][0], groups)
     else:
         members = families.with_families(groups, arguments.sweep)
         asked: families.Outlet | None = arguments.outlet
         if groups.are_in_mm and not asked:
             asked = families.common_outlet(members)
         if asked:
-            for group in members:
-                asked.of(group)  # refuses a place in mm if a diameter is not known
+            asked.refuse_behind_exits(groups.members)
             fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{asked.place:.17g}{asked.unit}"))
             groups = fit.known.finished(arguments.sweep)
         figure = families.draw(groups, asked, arguments.sweep)

@@ -5,12 +5,13 @@
 
 The first line of rows.csv has the names of the columns, each with its unit in brackets; the numbers equal those of the
 sweep, bit for bit. rows.h5 has a dataset for each column, with the attributes `unit` and `meaning`. Missing values are
-empty or NaN.
+empty or NaN. With break-up=daughters, a second file has the droplets of all families: rows-droplets.csv or
+rows-droplets.h5.
 """
 
 import pathlib
 
-from ..reading import programs
+from ..reading import export, programs
 from ..results import sweep
 from . import command_line
 
@@ -24,5 +25,8 @@ def body() -> int:
     arguments = parser.parse_args()
     paths, folder = arguments.sweeps, arguments.programs
     rows = sweep.merged(paths, folder) if len(paths) > 1 else sweep.Sweep(paths[0], folder)
-    command_line.tell(rows.export(arguments.output))
+    made = rows.export(arguments.output)
+    command_line.tell(made)
+    if len(rows.droplets):
+        command_line.tell(export.file_of_droplets(made))
     return 0

@@ -75,7 +75,9 @@ def motions_of(clogrun: pathlib.Path, sweep: pathlib.Path, family: pandas.DataFr
 class FamilyFilm(film.Film):
     """Shows all droplets of a family at equal intervals."""
 
-    def __init__(self, motions: Sequence[Motion], num_frames: int, rate: int, size: str = "1080p") -> None:
+    def __init__(self, motions: Sequence[Motion], num_frames: int, rate: int, size: str = "1080p",
+                 exit_distance: float | None = None) -> None:
+        """@param motions  see motions_of(); @param exit_distance  from the release to the exit of a device [sigma]"""
         self._motions = motions
         self._rate = rate
         self._frames = np.linspace(0, max(motion.member.end_time for motion in motions), num_frames)
@@ -87,6 +89,9 @@ class FamilyFilm(film.Film):
         self._axes.add_collection(PatchCollection([Circle((x, y), diameter / 2) for x, y, diameter in circles],
                                                   facecolor=style.OBSTACLE, edgecolor="none"))
         self._axes.add_patch(Rectangle((0, 0), 1, 1, transform=self._axes.transAxes, fill=False, linewidth=0.8))
+        if exit_distance is not None:
+            release = trajectory.centroids(motions[0].outlines[:1])[0, 0]
+            self._axes.axvline(release + exit_distance, **families.EXIT)
         surroundings.draw_guides(self._axes)
         self._fills = [self._axes.fill([0], [0], alpha=0.75, edgecolor="black", linewidth=0.8)[0] for _ in motions]
         self._clock = self.figure.text(WIDTH - 0.01, 0.965, "", va="center", ha="right", fontsize=11)

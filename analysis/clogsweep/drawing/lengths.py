@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Callable, Collection, Iterable, Sequence
 
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 
 from .. import style
 from ..labels import AXES, LABORATORY
@@ -189,9 +190,9 @@ def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
         add_scale(axes, "top", tension, LABORATORY["line_tension"])
 
 
-def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
+def add_scale(axes: Axes, side: str, factor: float, label: str) -> Axis:
     """Adds a second scale in other units at a side, "top" or "right". Complete the first scale before this call,
-    because later changes would remove the ticks of the second scale."""
+    because later changes would remove the ticks of the second scale. @return the axis of the second scale"""
     upright = side == "right"
     second = (axes.secondary_yaxis if upright else axes.secondary_xaxis)(side, functions=(lambda value: value * factor, lambda value: value / factor))
     axis = second.yaxis if upright else second.xaxis
@@ -199,6 +200,7 @@ def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
     if (axes.get_yscale() if upright else axes.get_xscale()) == "log":
         first, last = axes.get_ylim() if upright else axes.get_xlim()
         style.plain_logarithmic(axis, last / first)
+    return axis
 
 
 def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:

@@ -298,13 +298,20 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
 
 def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path, charts: Charts) -> str:
     if not shown:
-        return "<p>No polygon has clogged.</p>"
+        return ""
     caption = "touched obstacles blue, contact red, convex hull dashed"
     try:
         again = clogs.run_all(clogrun, sweep, shown, 2)
     except UserError as error:
         raise UserError(f"{error}; use --examples 0 to skip the replays") from error
     return side_by_side(framed(charts.draw(clog.picture().figure, caption), caption) for clog in again)
+
+
+def no_clogs(groups: Groups) -> str:
+    """The section about clogs if none of the released droplets is a clogged polygon."""
+    if any(group["families"]["clogged"]["number"] for group in groups.members if group.get("families")):
+        return "<p>No released droplet has clogged, but daughters have. Pictures of them are not part of this page.</p>"
+    return "<p>No polygon has clogged.</p>"
 
 
 def progress_of(status: dict[str, Any]) -> str:
@@ -374,11 +381,12 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
         broken.append(chart(families.draw(groups, None, sweep),
                             "droplets that break up, and the sizes of those that pass; all other tables and pictures "
                             "are of released droplets until they break up"))
-    shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
+    clogged = clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep)
+    shown = example_pictures(examples(clogged, count), sweep, clogrun, charts)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals),
             "What becomes of them": side_by_side(ends), "Families": side_by_side(broken),
             **devices(groups, sweep, count, clogrun, charts),
-            "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
+            "Example clogs": shown if clogged else no_clogs(groups)}
 
 
 def label_of_passage(groups: Groups, group: Group) -> str:

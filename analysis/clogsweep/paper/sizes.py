@@ -66,5 +66,5 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
     drawing.suptitle(style.in_lines(describe(runner.columns(CONFIG), groups, ["vertices", "line_tension"]), fits),
                      fontsize=8, color="0.25")
     unknown = max(point["not_known"] for point in data)
-    style.notes_of_panels(drawing, [fate_note(outlet, unknown)])
+    style.notes_of_panels(drawing, [fate_note(str(outlet), unknown)])
     return Plate(drawing, data)

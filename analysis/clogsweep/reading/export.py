@@ -14,6 +14,19 @@ if TYPE_CHECKING:
     import pandas
 
 
+def file_of_droplets(path: pathlib.Path) -> pathlib.Path:
+    """The file for the table of droplets. @param path  of the rows"""
+    return path.with_name(f"{path.stem}-droplets{path.suffix}")
+
+
+def refuse_unwritable(path: pathlib.Path) -> None:
+    """@throws UserError  if the ending is unknown, or the file exists"""
+    if path.suffix not in (".csv", ".h5"):
+        raise UserError(f"cannot write {path} (it can only be .csv or .h5); give another ending")
+    if path.exists():  # The file may be a sweep, or a table that the user made.
+        raise UserError(f"will not overwrite {path} (it exists); give another name, or remove it first")
+
+
 def write(table: pandas.DataFrame, path: pathlib.Path, source: str) -> None:
     """Writes the table.
     @param table  see stored.read_table()
@@ -21,10 +34,6 @@ def write(table: pandas.DataFrame, path: pathlib.Path, source: str) -> None:
     attributes `unit` and `meaning`
     @param source  provenance of the rows
     @throws UserError"""
-    if path.suffix not in (".csv", ".h5"):
-        raise UserError(f"cannot write {path} (it can only be .csv or .h5); give another ending")
-    if path.exists():  # The file may be a sweep, or a table that the user made.
-        raise UserError(f"will not overwrite {path} (it exists); give another name, or remove it first")
     units, meanings = table.attrs["units"], table.attrs["meanings"]
     with outputs.replaced(path) as fresh:
         if path.suffix == ".csv":

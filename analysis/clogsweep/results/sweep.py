@@ -179,10 +179,15 @@ class Sweep:
 
     def export(self, output: str | os.PathLike[str]) -> pathlib.Path:
         """Writes `rows` for other programs, with the units of the columns. A .csv has one table, and a .h5 has a
-        dataset for each column. If the laboratory is known, diameter and tilt of the droplet are the last columns.
-        @return the file. @throws UserError  if the file exists"""
+        dataset for each column. If the laboratory is known, diameter and tilt of the droplet are the last columns. If
+        there are `droplets`, OUTPUT-droplets.csv (or .h5) has them.
+        @return the file of the rows. @throws UserError  if a file exists"""
         path = pathlib.Path(output)
-        export.write(self._rows_with_droplets(), path, stored.source(self.attributes))
+        files = [path, export.file_of_droplets(path)] if len(self.droplets) else [path]
+        for file in files:
+            export.refuse_unwritable(file)
+        for file, table in zip(files, (self._rows_with_droplets(), self.droplets)):
+            export.write(table, file, stored.source(self.attributes))
         return path
 
     def _rows_with_droplets(self) -> pandas.DataFrame:

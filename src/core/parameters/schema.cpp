@@ -584,7 +584,7 @@ std::vector<Parameter> interface_entries() {
             {.column = "inertia",
              .symbol = "S",
              .meaning = "factor S that multiplies the inertial mass, but neither weight nor drag; the "
-                        "automatic time-step is proportional to sqrt(S)",
+                        "automatic time-step is proportional to sqrt(S), or to S if drag limits it",
              .role = numerics,
              .scope = &polygons,
              .range = {from(0.01, "time steps would be needlessly short", "use 0.01..16"),
