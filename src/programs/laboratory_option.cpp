@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -86,6 +87,9 @@ struct Droplets {
   std::vector<laboratory::Laboratory> all;
   /// Whether there are several sizes, or circles that were drawn for another size.
   bool have_several_sizes = false;
+  /// Files of circles that state a unit, but no droplet. Their names get the droplet's diameter, so that a
+  /// printed config can be read without the laboratory.
+  std::set<std::string> files_without_droplet = {};
 
   void note_size(double diameter) {
     constexpr double rounding = 0.005;
@@ -104,7 +108,7 @@ std::string scaled_circles(const std::string& list, const laboratory::Laboratory
   constexpr double milli = 1e-3;
   std::vector<std::string> names = items_of(list);
   for (std::string& name : names)
-    if (droplets.have_several_sizes && name != "none")
+    if ((droplets.have_several_sizes && name != "none") || droplets.files_without_droplet.contains(name))
       name += fmt::format("@{:.12g}mm", lab.experiment.diameter / milli);
   return joined(names, ",");
 }
@@ -237,6 +241,39 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
   return expanded;
 }
 
+/// Whether obstacle-diameter has a unit in every parameter set.
+bool has_diameter_with_unit(const laboratory::Texts& given, const sweep::Points& points) {
+  const auto key = std::ranges::find(points.keys, "obstacle-diameter");
+  const bool is_given = given.contains("obstacle-diameter");
+  if (key == points.keys.end()) return is_given;
+  return std::ranges::all_of(points.rows, [&](const std::vector<std::string>& row) {
+    const std::string& cell = row[static_cast<std::size_t>(key - points.keys.begin())];
+    return cell.empty() ? is_given : !is_plain_number(cell);
+  });
+}
+
+/// Notes the droplet for which circles were drawn. If the file names no unit, prints the one that is taken.
+/// @throws Error if the file is in a unit, and the diameters of some circles are not
+void note_circles(const cli::CommandLine& line, const std::string& name, bool has_diameter_with_unit,
+                  Droplets& droplets) {
+  constexpr double milli = 1e-3;
+  const double first_diameter = droplets.all.front().experiment.diameter;
+  const OwnCircles circles = cli::read_circles(name, first_diameter);
+  if (const auto drawn_for = circles.droplet()) {
+    droplets.note_size(*drawn_for);
+    const bool is_from_laboratory = cli::read_circles(name, 2 * first_diameter).droplet() != drawn_for;
+    if (is_from_laboratory) droplets.files_without_droplet.insert(name);
+    if (!has_diameter_with_unit && std::ranges::count(circles.circles(), 0.0, &Obstacle::radius) > 0)
+      throw Error(name +
+                  " has circles without a diameter, and a unit; write obstacle-diameter with a unit, too, "
+                  "as in obstacle-diameter=0.3mm");
+  } else if (line.has("dry-run") && !line.has("quiet")) {
+    console::say(
+        fmt::format("{}: obstacles={} names no unit, so its lengths are in droplet diameters ({:.4g} mm)",
+                    line.program(), name, first_diameter / milli));
+  }
+}
+
 }  // namespace
 
 void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
@@ -250,10 +287,10 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
     given[sweep::circles_key] = circles;
     circle_lists.insert(circles);
   }
+  const double first_diameter = droplets.all.front().experiment.diameter;
   for (const std::string& list : circle_lists)
     for (const std::string& name : items_of(list))
-      if (name != "none")
-        if (const auto drawn_for = cli::read_circles(name).droplet()) droplets.note_size(*drawn_for);
+      if (name != "none") note_circles(line, name, has_diameter_with_unit(given, points), droplets);
   if (!line.has("quiet")) say_law_of_speed(line, droplets);
   if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
   const std::vector<std::string> models = settings.values("model");
@@ -264,7 +301,11 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
   for (const auto& [key, text] : base) settings.set(key, text);
   const sweep::CircleFiles before = settings.circle_files();
   for (const auto& [file, circles] : before) settings.detach(file);
-  for (const std::string& file : settings.missing_files()) settings.attach(file, cli::read_circles(file));
+  std::vector<std::string> files = settings.missing_files();
+  for (const std::string& list : cells_of(points, sweep::circles_key))
+    std::ranges::copy(items_of(list), std::back_inserter(files));
+  for (const std::string& file : files)
+    if (file != "none") settings.attach(file, cli::read_circles(file, first_diameter));
 }
 
 void use_laboratory(cli::CommandLine& line) {

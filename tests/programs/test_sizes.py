@@ -140,6 +140,65 @@ class Sizes(LaboratoryTest):
             self.assertAlmostEqual(file["runs"]["box"][0], 20.4)
             self.assertAlmostEqual(file["runs"]["obstacle_gap"][0], 2 * (1.7 - 0.3))
 
+    def test_circles_in_millimetres_get_the_droplet_of_the_laboratory(self):
+        """A unit is enough, in a comment or in the header; the diameter may be obstacle-diameter."""
+        rows = [line.split(",") for line in POSTS.splitlines()[2:]]
+        centres = "".join(f"{x},{y}\n" for x, y, _ in rows)
+        keys = ["box=10.2mm", "vertices=64", "max-time=5", "seeds=1"]
+        full = POSTS.split("\n", 1)[1]
+        for lab in ({"diameter": "0.8 mm", "angle": "20 deg"}, {"diameter": "0.8 mm, 1.6 mm", "angle": "20 deg"}):
+            self.write("posts.csv", POSTS)
+            self.sweep("obstacles=posts.csv", *keys, output="known.h5", **lab)
+            known = sorted(table(self.folder / "known.h5").obstacles)
+            for text in ("# units=mm\n" + full, full.replace("x,y,diameter", "x [mm],y [mm],diameter [mm]"),
+                         full.replace("x,y,diameter", "x_mm,y_mm,d"), "# x_mm y_mm diameter_mm\n" + full.split("\n", 1)[1],
+                         "# units=um\nx,y,r\n" + "".join(f"{1000 * float(x):.0f},{1000 * float(y):.0f},150\n" for x, y, _ in rows)):
+                with self.subTest(text[:30], **lab):
+                    self.write("own.csv", text)
+                    self.sweep("obstacles=own.csv", *keys, output="own.h5", **lab)
+                    self.assertEqual(sorted(table(self.folder / "own.h5").obstacles), known)
+                    (self.folder / "own.h5").unlink()
+            (self.folder / "known.h5").unlink()
+            for text in ("# units=mm\n" + centres, "x [mm], y [mm]\n" + centres, "# units=mm droplet=1mm\nx,y\n" + centres):
+                with self.subTest(text[:30], **lab):
+                    self.write("own.csv", text)
+                    self.sweep("obstacles=own.csv", "obstacle-diameter=0.3mm", *keys, output="own.h5", **lab)
+                    found = table(self.folder / "own.h5")
+                    # The density depends on the diameters neither of posts nor of droplets, the gap on both.
+                    np.testing.assert_allclose(sorted(found.obstacle_gap), sorted(1.4 / float(one.split()[0]) for one in lab["diameter"].split(",")), rtol=1e-9)
+                    (self.folder / "own.h5").unlink()
+                    self.refuse("clogsweep", "--quiet", "--lab", self.lab(**lab), "obstacles=own.csv", *keys, "--output", "x.h5",
+                                words=["own.csv", "obstacle-diameter=0.3mm"] if "," not in lab["diameter"] else ["obstacle-diameter=0.3"])
+        self.write("points.csv", "line-tension;obstacles\n1;own.csv\n")
+        self.write("own.csv", "# units=mm\n" + full)
+        for lab in ({"diameter": "0.8 mm", "angle": "20 deg"}, {"diameter": "0.8 mm, 1.6 mm", "angle": "20 deg"}):
+            self.sweep("--points", "points.csv", *keys, output="own.h5", **lab)
+            self.assertEqual(len(table(self.folder / "own.h5")), len(lab["diameter"].split(",")))
+            (self.folder / "own.h5").unlink()
+        keys = ["--lab", self.lab(diameter="0.8 mm", angle="20 deg"), "obstacles=own.csv", "obstacle-diameter=0.3mm", *keys]
+        for text in ("# units=mm\n" + full, "x [mm], y [mm]\n" + centres):  # A printed config needs no laboratory.
+            self.write("own.csv", text)
+            self.write("own.cfg", self.succeed("clogsweep", *keys, "--print-config").stdout)
+            for number, arguments in enumerate((keys, ["--config", "own.cfg"])):
+                self.succeed("clogsweep", *arguments, "--output", f"own{number}.h5")
+            self.assertEqual(table(self.folder / "own0.h5").obstacles[0], table(self.folder / "own1.h5").obstacles[0])
+            for number in range(2):
+                (self.folder / f"own{number}.h5").unlink()
+        self.write("own.csv", "# units=mm\n" + full)
+        self.refuse("clogsweep", "obstacles=own.csv", "box=10", "--output", "x.h5", words=["own.csv line 1", "droplet=200um", "--lab"])
+        self.write("own.csv", "x [mm],y [mm]\n" + centres)
+        self.refuse("clogsweep", "obstacles=own.csv", "box=10", "--output", "x.h5", words=["own.csv line 2", "droplet=200um", "--lab"])
+
+    def test_a_dry_run_names_the_unit_of_plain_circles(self):
+        lab = self.lab(diameter="0.8 mm", angle="20 deg")
+        self.write("plain.csv", "x,y,diameter\n1,1,0.3\n4,4,0.3\n")
+        self.write("mm.csv", "# units=mm\nx,y,diameter\n1,1,0.3\n4,4,0.3\n")
+        said = self.succeed("clogsweep", "--lab", lab, "obstacles=plain.csv,mm.csv", "box=6", "--dry-run").stderr
+        self.assertEqual([line for line in said.splitlines() if ".csv" in line],
+                         ["clogsweep: obstacles=plain.csv names no unit, so its lengths are in droplet diameters (0.8 mm)"])
+        for arguments in (["--lab", lab, "obstacles=plain.csv", "box=6", "--dry-run", "--quiet"], ["obstacles=plain.csv", "box=6", "--dry-run"]):
+            self.assertNotIn("names no unit", self.succeed("clogsweep", *arguments).stderr)
+
     def test_what_would_be_meant_in_droplet_diameters_is_refused(self):
         self.write("posts.csv", POSTS)
         lab = self.lab()
