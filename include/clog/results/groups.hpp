@@ -121,8 +121,8 @@ struct Group {
   int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
   int num_stability_unknown = 0;    ///< clogs with unknown stability (column stability)
   int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
-  /// Whether at least half of the clogs have the distance of another clog. If no run clogged, the distances
-  /// of the runs that met an obstacle are compared.
+  /// Whether at least half of the clogs are at one place, or have the distance of another clog. If no run
+  /// clogged, the distances of the runs that met an obstacle are compared.
   bool are_runs_equal = false;
   int num_free = 0;  ///< runs that met no obstacle
   /// The x of those droplets of a device that were released away from their place on the entrance [sigma].
