@@ -525,7 +525,13 @@ class Fit(ProgramTest):
         group, = self.fit()["groups"]
         self.assertEqual((group["wrapped"], group["clogging_length_wrapped"]), (0, None))
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
-        self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
+        text = self.succeed("clogfit", "sweep.h5").stdout
+        self.assertNotIn("w/s/h", text)
+        self.assertIn("\nclogs: all squeezed\n", text)
+        self.change(mechanism=[b"none"] * 10)
+        self.assertIn("\nclogs: all other (for instance", self.succeed("clogfit", "sweep.h5").stdout)
+        self.change(status=[b"flowing"] * 10)
+        self.assertNotIn("clogs: all", self.succeed("clogfit", "sweep.h5").stdout)
 
     def test_a_list_of_vertices_is_printed_though_they_may_be_automatic(self):
         self.succeed("clogsweep", "seeds=1..2", "vertices=64,96", "box=20", *FAR, "--output", "sweep.h5")
