@@ -8,7 +8,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 732
+LONG_PYTHON_LINES = 730
 
 
 def prose(text):
