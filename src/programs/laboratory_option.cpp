@@ -177,6 +177,18 @@ void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
     console::say(fmt::format("{}: {}: {}", line.program(), line.get("lab"), law));
 }
 
+/// Prints a line if the laboratory's exponent cannot be that of daughters, because other runs of the same
+/// list have no daughters.
+void say_exponent_unused(const cli::CommandLine& line, const Droplets& droplets) {
+  const std::vector<std::string>& ends = line.settings().values("break-up");
+  const std::optional<laboratory::MeasuredSpeed>& law = droplets.all.front().measured;
+  if (law && law->exponent > 0 && !line.settings().is_given("speed-exponent") && ends.size() > 1)
+    console::say(
+        fmt::format("{}: the speed-exponent of {} is not used for daughters, as break-up has several "
+                    "values; use one value, or --points",
+                    line.program(), line.get("lab")));
+}
+
 /// The texts of keys for one droplet: numbers in the model's units, and circles scaled to the droplet.
 laboratory::Texts converted(const laboratory::Texts& given, const laboratory::Laboratory& lab,
                             const laboratory::Scales& scales, const Droplets& droplets) {
@@ -187,12 +199,22 @@ laboratory::Texts converted(const laboratory::Texts& given, const laboratory::La
   return texts;
 }
 
+/// The values of break-up. @param own  texts of a point, which replace those of all points
+std::vector<std::string> break_up_words(const laboratory::Texts& own, const sweep::Settings& settings) {
+  const auto found = own.find("break-up");
+  return found == own.end() ? settings.values("break-up") : items_of(found->second);
+}
+
+bool is_daughters(const std::string& break_up) { return break_up == "daughters"; }
+
 /// Texts of the keys that no point sets. @param model  empty if points set it
 laboratory::Texts texts_of(const laboratory::Laboratory& lab, const Droplets& droplets,
                            const laboratory::Texts& given, const sweep::Settings& settings,
                            const std::string& model) {
+  const std::vector<std::string> ends = break_up_words(given, settings);
+  const bool has_daughters = std::ranges::all_of(ends, is_daughters);
   laboratory::Texts texts = converted(given, lab, laboratory::scales_of(lab), droplets);
-  texts.merge(laboratory::droplet_texts(lab, settings, model));
+  texts.merge(laboratory::droplet_texts(lab, settings, model, has_daughters));
   return texts;
 }
 
@@ -228,7 +250,7 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
         laboratory::Texts& set = sets.emplace_back(own_set);
         if (!points.lines.empty()) lines.push_back(points.lines[place]);
         if (models.size() > 1) set["model"] = model;
-        set.merge(texts_of(lab, droplets, given, line.settings(), model));
+        set.merge(texts_of(lab, droplets, own, line.settings(), model));
         for (const auto& [key, text] : set) keys.insert(key);
       }
     }
@@ -291,7 +313,10 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
   for (const std::string& list : circle_lists)
     for (const std::string& name : items_of(list))
       if (name != "none") note_circles(line, name, has_diameter_with_unit(given, points), droplets);
-  if (!line.has("quiet")) say_law_of_speed(line, droplets);
+  if (!line.has("quiet")) {
+    say_law_of_speed(line, droplets);
+    say_exponent_unused(line, droplets);
+  }
   if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
   const std::vector<std::string> models = settings.values("model");
   const bool have_points = droplets.all.size() > 1 || models.size() > 1 || !points.empty();
