@@ -147,6 +147,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
   if (has("config")) read_config(get("config"));
   for (const auto& [name, value] : values_)
     if (is_key(name)) set_key(name, value.as<std::string>());
+  if (has("lab")) return;  // use_laboratories() reads the circles
   for (const std::string& file : settings_.missing_files()) settings_.attach(file, read_circles(file));
 }
 

@@ -47,8 +47,8 @@ bool is_same_unit(const std::string& unit, const std::string& other) {
 
 /// Converts lengths of the file to droplet diameters.
 struct Scale {
-  std::string unit;  ///< unit of the numbers; empty: droplet diameters
-  double droplet_metres = 0;
+  std::string unit;           ///< unit of the numbers; empty: droplet diameters
+  double droplet_metres = 0;  ///< 0: not known
 
   /// Rounds to a few digits, so that the same circles in other units give the same bits.
   double in_diameters(double number) const {
@@ -59,26 +59,33 @@ struct Scale {
 };
 
 /// Reads `units=um droplet=200um` from a comment; anything else in a comment is skipped. @throws Error
+/// @param is_droplet_known  whether the comment need not state the droplet's diameter
 /// @param are_below_circles  whether circles precede the comment
-void read_scale(const std::string& comment, Scale& scale, bool are_below_circles) {
+void read_scale(const std::string& comment, Scale& scale, bool is_droplet_known, bool are_below_circles) {
   const auto [unit, droplet] = console::units_in(comment);
   if (!unit && !droplet) return;
   if (unit == droplet_diameters && !droplet && scale.unit.empty()) return;
-  if (!unit || !droplet)
-    throw Error("units and the droplet's diameter belong together, as in '# units=um droplet=200um'");
-  const std::size_t begin_of_unit = droplet->find_first_not_of("0123456789.eE+-");
-  const double diameter = sweep::to_number(droplet->substr(0, begin_of_unit));
-  const std::string unit_of_droplet =
-      begin_of_unit == std::string::npos ? *unit : droplet->substr(begin_of_unit);
+  if (!unit || (!droplet && !is_droplet_known))
+    throw Error(
+        "units and the droplet's diameter belong together, as in '# units=um droplet=200um'; --lab FILE "
+        "with the diameter may replace droplet=");
   metres_in(*unit);
-  const Scale earlier = std::exchange(scale, {*unit, diameter * metres_in(unit_of_droplet)});
+  Scale stated{*unit, scale.droplet_metres};
+  if (droplet) {
+    const std::size_t begin_of_unit = droplet->find_first_not_of("0123456789.eE+-");
+    const double diameter = sweep::to_number(droplet->substr(0, begin_of_unit));
+    const std::string unit_of_droplet =
+        begin_of_unit == std::string::npos ? *unit : droplet->substr(begin_of_unit);
+    stated.droplet_metres = diameter * metres_in(unit_of_droplet);
+  }
+  const Scale earlier = std::exchange(scale, stated);
   const bool are_known = !earlier.unit.empty() && is_same_unit(earlier.unit, scale.unit) &&
                          earlier.droplet_metres == scale.droplet_metres;
   if (are_below_circles && !are_known)
     throw Error("units stand below circles, whose units they are not; move this line above all circles");
   if (!earlier.unit.empty() && !are_known)
     throw Error("units contradict those of an earlier line; delete one of the two");
-  if (!(scale.droplet_metres > 0) || !std::isfinite(scale.droplet_metres))
+  if (droplet && (!(scale.droplet_metres > 0) || !std::isfinite(scale.droplet_metres)))
     throw Error("droplet must be a diameter above 0, as in '# units=um droplet=200um'");
 }
 
@@ -180,7 +187,7 @@ void check_unit(const Columns& columns, const Scale& scale) {
   if (scale.unit.empty())
     throw Error(
         fmt::format("the columns are in {0}; put a line '# units={0} droplet=200um' with your droplet's "
-                    "diameter above them",
+                    "diameter above them, or add --lab FILE with the diameter",
                     columns.unit));
   throw Error(fmt::format("the columns are in {}, but the file says units={}; correct one of them",
                           columns.unit, scale.unit));
@@ -209,9 +216,6 @@ Obstacle parse_circle(console::TableLine line, const Columns& columns, const Sca
   if (has(columns.radius)) circle.radius = number(columns.radius);
   const bool has_size = has(columns.diameter) || has(columns.radius);
   if (has_size && !(circle.radius > 0)) throw Error("diameter must be positive");
-  if (!has_size && !scale.unit.empty())
-    throw Error("needs a diameter, as the file is in " + scale.unit +
-                " and obstacle-diameter in droplet diameters");
   return circle;
 }
 
@@ -228,7 +232,7 @@ std::pair<std::string, std::optional<double>> parts_of(const std::string& name) 
 
 }  // namespace
 
-OwnCircles read_circles(const std::string& name) {
+OwnCircles read_circles(const std::string& name, const std::optional<double>& laboratory_droplet) {
   const std::pair<std::string, std::optional<double>> parts = parts_of(name);
   const auto& path = parts.first;
   const auto& droplet = parts.second;  // clang captures no structured bindings
@@ -239,7 +243,8 @@ OwnCircles read_circles(const std::string& name) {
   std::vector<Obstacle> circles;
   std::map<std::array<double, 3>, int> lines;  // the line of each circle
   Columns columns;
-  Scale scale;
+  Scale scale{.unit = "", .droplet_metres = laboratory_droplet.value_or(0)};
+  const bool is_droplet_known = droplet || laboratory_droplet;
   console::DecimalCommas commas;
   bool is_first = true;
   const auto scale_to = [&scale](const std::optional<double>& other_droplet) {
@@ -252,7 +257,12 @@ OwnCircles read_circles(const std::string& name) {
           columns = columns_named(line.cells);
           return;
         }
+        if (is_droplet_known && scale.unit.empty() && columns.unit != droplet_diameters)
+          scale.unit = columns.unit;
         const Obstacle circle = parse_circle(line, columns, scale_to(droplet), commas);
+        if (circle.radius == 0 && !scale.unit.empty() && !is_droplet_known)
+          throw Error("needs a diameter, as the file is in " + scale.unit +
+                      " and obstacle-diameter in droplet diameters");
         const auto [known, is_new] =
             lines.emplace(std::array{circle.x, circle.y, circle.radius}, line.number);
         if (!is_new)
@@ -261,7 +271,7 @@ OwnCircles read_circles(const std::string& name) {
         circles.push_back(circle);
       },
       [&](const std::string& comment) {
-        read_scale(comment, scale, !circles.empty());
+        read_scale(comment, scale, is_droplet_known, !circles.empty());
         if (is_first) columns = columns_in(comment).value_or(columns);
       });
   commas.check(path);

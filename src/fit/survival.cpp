@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -172,6 +173,22 @@ bool are_mostly_equal(std::vector<double> distances) {
     if (end - begin > 1) num_equal += end - begin;
   }
   return num_equal > 0 && 2 * num_equal >= distances.size();
+}
+
+bool are_mostly_at_one_place(std::vector<double> distances) {
+  constexpr double share_of_spacing = 0.01;
+  constexpr std::size_t fewest = 3;  // two of three or four distances are close by chance in 1 % of cases
+  std::erase_if(distances, [](double distance) { return std::isnan(distance); });
+  std::ranges::sort(distances);
+  const auto number = static_cast<double>(distances.size());
+  const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
+  const double widest_gap = share_of_spacing * sum / (number * number);
+  std::size_t num_here = 0, most = 0;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    num_here = i > 0 && distances[i] - distances[i - 1] <= widest_gap ? num_here + 1 : 1;
+    most = std::max(most, num_here);
+  }
+  return most >= fewest && 2 * most >= distances.size();
 }
 
 }  // namespace clog::fit

@@ -119,7 +119,8 @@ std::string rounded_text(double value) { return std::isfinite(value) ? fmt::form
 
 std::string line_tension_text(const Scales& scales) { return rounded_text(scales.line_tension); }
 
-Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model) {
+Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model,
+                    bool has_daughters) {
   const Scales scales = scales_of(lab);
   Texts texts = {{"laboratory", lab.text}};
   const auto set = [&](const char* key, double value) {
@@ -128,6 +129,7 @@ Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, cons
   set("terminal-speed", scales.terminal_speed);
   if (model == "dp") set("line-tension", scales.line_tension);
   if (model == "sp") set("wall-stiffness", scales.wall_stiffness);
+  if (has_daughters && lab.measured) set("speed-exponent", lab.measured->exponent);
   return texts;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -86,6 +87,9 @@ struct Droplets {
   std::vector<laboratory::Laboratory> all;
   /// Whether the droplets have several sizes, or circles were drawn for a droplet of another size.
   bool have_several_sizes = false;
+  /// Files of circles that state a unit, but no droplet. Their names get the droplet's diameter, so that a
+  /// printed config can be read without the laboratory.
+  std::set<std::string> files_without_droplet = {};
 
   void note_size(double diameter) {
     constexpr double rounding = 0.005;
@@ -105,7 +109,7 @@ std::string scaled_circles(const std::string& list, const laboratory::Laboratory
   constexpr double milli = 1e-3;
   std::vector<std::string> names = items_of(list);
   for (std::string& name : names)
-    if (droplets.have_several_sizes && name != "none")
+    if ((droplets.have_several_sizes && name != "none") || droplets.files_without_droplet.contains(name))
       name += fmt::format("@{:.12g}mm", lab.experiment.diameter / milli);
   return joined(names, ",");
 }
@@ -175,6 +179,18 @@ void say_law_of_speed(const cli::CommandLine& line, const Droplets& droplets) {
     console::say(fmt::format("{}: {}: {}", line.program(), line.get("lab"), law));
 }
 
+/// Prints a line if the laboratory's exponent cannot be that of daughters, because other runs of the same
+/// list have no daughters.
+void say_exponent_unused(const cli::CommandLine& line, const Droplets& droplets) {
+  const std::vector<std::string>& ends = line.settings().values("break-up");
+  const std::optional<laboratory::MeasuredSpeed>& law = droplets.all.front().measured;
+  if (law && law->exponent > 0 && !line.settings().is_given("speed-exponent") && ends.size() > 1)
+    console::say(
+        fmt::format("{}: the speed-exponent of {} is not used for daughters, as break-up has several "
+                    "values; use one value, or --points",
+                    line.program(), line.get("lab")));
+}
+
 /// The texts of keys for one droplet: numbers in the model's units, and circles scaled to the droplet.
 laboratory::Texts converted(const laboratory::Texts& given, const laboratory::Laboratory& lab,
                             const laboratory::Scales& scales, const Droplets& droplets) {
@@ -185,12 +201,22 @@ laboratory::Texts converted(const laboratory::Texts& given, const laboratory::La
   return texts;
 }
 
+/// The values of break-up. @param own  texts of a point, which replace those of all points
+std::vector<std::string> break_up_words(const laboratory::Texts& own, const sweep::Settings& settings) {
+  const auto found = own.find("break-up");
+  return found == own.end() ? settings.values("break-up") : items_of(found->second);
+}
+
+bool is_daughters(const std::string& break_up) { return break_up == "daughters"; }
+
 /// Texts of the keys that no point sets. @param model  the model; empty if points set the model
 laboratory::Texts texts_of(const laboratory::Laboratory& lab, const Droplets& droplets,
                            const laboratory::Texts& given, const sweep::Settings& settings,
                            const std::string& model) {
+  const std::vector<std::string> ends = break_up_words(given, settings);
+  const bool has_daughters = std::ranges::all_of(ends, is_daughters);
   laboratory::Texts texts = converted(given, lab, laboratory::scales_of(lab), droplets);
-  texts.merge(laboratory::droplet_texts(lab, settings, model));
+  texts.merge(laboratory::droplet_texts(lab, settings, model, has_daughters));
   return texts;
 }
 
@@ -226,7 +252,7 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
         laboratory::Texts& set = sets.emplace_back(own_set);
         if (!points.lines.empty()) lines.push_back(points.lines[place]);
         if (models.size() > 1) set["model"] = model;
-        set.merge(texts_of(lab, droplets, given, line.settings(), model));
+        set.merge(texts_of(lab, droplets, own, line.settings(), model));
         for (const auto& [key, text] : set) keys.insert(key);
       }
     }
@@ -237,6 +263,39 @@ sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
     for (const std::string& key : keys) row.push_back(set.contains(key) ? set.at(key) : "");
   }
   return expanded;
+}
+
+/// Whether obstacle-diameter has a unit in every parameter set.
+bool has_diameter_with_unit(const laboratory::Texts& given, const sweep::Points& points) {
+  const auto key = std::ranges::find(points.keys, "obstacle-diameter");
+  const bool is_given = given.contains("obstacle-diameter");
+  if (key == points.keys.end()) return is_given;
+  return std::ranges::all_of(points.rows, [&](const std::vector<std::string>& row) {
+    const std::string& cell = row[static_cast<std::size_t>(key - points.keys.begin())];
+    return cell.empty() ? is_given : !is_plain_number(cell);
+  });
+}
+
+/// Notes the droplet for which circles were drawn. If the file names no unit, prints the one that is taken.
+/// @throws Error if the file is in a unit, and the diameters of some circles are not
+void note_circles(const cli::CommandLine& line, const std::string& name, bool has_diameter_with_unit,
+                  Droplets& droplets) {
+  constexpr double milli = 1e-3;
+  const double first_diameter = droplets.all.front().experiment.diameter;
+  const OwnCircles circles = cli::read_circles(name, first_diameter);
+  if (const auto drawn_for = circles.droplet()) {
+    droplets.note_size(*drawn_for);
+    const bool is_from_laboratory = cli::read_circles(name, 2 * first_diameter).droplet() != drawn_for;
+    if (is_from_laboratory) droplets.files_without_droplet.insert(name);
+    if (!has_diameter_with_unit && std::ranges::count(circles.circles(), 0.0, &Obstacle::radius) > 0)
+      throw Error(name +
+                  " has circles without a diameter, and a unit; write obstacle-diameter with a unit, too, "
+                  "as in obstacle-diameter=0.3mm");
+  } else if (line.has("dry-run") && !line.has("quiet")) {
+    console::say(
+        fmt::format("{}: obstacles={} names no unit, so its lengths are in droplet diameters ({:.4g} mm)",
+                    line.program(), name, first_diameter / milli));
+  }
 }
 
 }  // namespace
@@ -252,11 +311,14 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
     given[sweep::circles_key] = circles;
     circle_lists.insert(circles);
   }
+  const double first_diameter = droplets.all.front().experiment.diameter;
   for (const std::string& list : circle_lists)
     for (const std::string& name : items_of(list))
-      if (name != "none")
-        if (const auto drawn_for = cli::read_circles(name).droplet()) droplets.note_size(*drawn_for);
-  if (!line.has("quiet")) say_law_of_speed(line, droplets);
+      if (name != "none") note_circles(line, name, has_diameter_with_unit(given, points), droplets);
+  if (!line.has("quiet")) {
+    say_law_of_speed(line, droplets);
+    say_exponent_unused(line, droplets);
+  }
   if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
   const std::vector<std::string> models = settings.values("model");
   const bool have_points = droplets.all.size() > 1 || models.size() > 1 || !points.empty();
@@ -266,7 +328,11 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
   for (const auto& [key, text] : base) settings.set(key, text);
   const sweep::CircleFiles before = settings.circle_files();
   for (const auto& [file, circles] : before) settings.detach(file);
-  for (const std::string& file : settings.missing_files()) settings.attach(file, cli::read_circles(file));
+  std::vector<std::string> files = settings.missing_files();
+  for (const std::string& list : cells_of(points, sweep::circles_key))
+    std::ranges::copy(items_of(list), std::back_inserter(files));
+  for (const std::string& file : files)
+    if (file != "none") settings.attach(file, cli::read_circles(file, first_diameter));
 }
 
 void use_laboratory(cli::CommandLine& line) {

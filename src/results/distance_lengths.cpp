@@ -142,7 +142,8 @@ std::vector<Flaws> flaws_of(const DistanceTable& table) {
     std::vector<double> clogs;
     for (const fit::Observation& run : table.groups[i].runs)
       if (run.clogged) clogs.push_back(run.distance);
-    if (fit::are_mostly_equal(std::move(clogs))) all[i].doubts.push_back(Doubt::equal_distances);
+    if (fit::are_mostly_equal(clogs) || fit::are_mostly_at_one_place(clogs))
+      all[i].doubts.push_back(Doubt::equal_distances);
   }
   return all;
 }

@@ -36,10 +36,15 @@ std::string note_of_automatic(const std::vector<Group>& groups, const std::vecto
 std::string column_notes(const std::vector<Group>& groups) {
   if (!has_clogging_length(groups.front().first_row)) return "";
   std::string text;
+  const std::string of_others =
+      fmt::format("other (for instance at rest on one obstacle{})",
+                  std::ranges::any_of(groups, is_dwell_possible) ? "; or droplets that moved on" : "");
+  const std::vector<const CauseText*> mechanisms = mechanisms_of_clogs(groups);
   if (are_mechanisms_shown(groups))
-    text += fmt::format(
-        "w/s/h/o: clogs that are wrapped, squeezed, hybrid, other (for instance at rest on one obstacle{})\n",
-        std::ranges::any_of(groups, is_dwell_possible) ? "; or droplets that moved on" : "");
+    text += fmt::format("w/s/h/o: clogs that are wrapped, squeezed, hybrid, {}\n", of_others);
+  else if (!mechanisms.empty())
+    text += fmt::format("clogs: all {}\n",
+                        mechanisms.front()->cause == Cause::other ? of_others : mechanisms.front()->count);
   if (have_some_broken(groups))
     text +=
         "lambda_b: mean distance before break-up. Broken droplets are censored in lambda, clogged ones in "

@@ -378,7 +378,9 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     const RunParameters& run = group.first_row.parameters;
     const Tally tally = tally_of(runs, from_distance, group);
     fit_clogging(group, tally.endings, confidence, from_distance);
-    group.are_runs_equal = fit::are_mostly_equal(tally.clogs.empty() ? tally.others : tally.clogs);
+    // Distances at max-time are similar in all dilute arrays, so only clogs may be at one place.
+    group.are_runs_equal = fit::are_mostly_equal(tally.clogs.empty() ? tally.others : tally.clogs) ||
+                           fit::are_mostly_at_one_place(tally.clogs);
     fit_meetings(group, tally.meetings, confidence);
     const std::vector<double> own_lines = lines ? lines(group.first_row) : std::vector<double>();
     if (is_device(run)) group.passages = passages_of(run, tally.arrivals, own_lines, confidence);

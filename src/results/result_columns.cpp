@@ -42,14 +42,18 @@ std::string interval_text(const fit::CloggingLength& clogging) {
   return std::isfinite(clogging.length) ? length.lower + " .. " + length.upper : "-";
 }
 
-bool are_mechanisms_shown(const std::vector<Group>& groups) {
-  std::set<Cause> seen;
+std::vector<const CauseText*> mechanisms_of_clogs(const std::vector<Group>& groups) {
+  std::set<const CauseText*> seen;
   for (const Group& group : groups)
     for (const Group::EndsBy& cause : group.causes)
-      if (cause.text->is_clog && cause.ends.num_clogs > 0) seen.insert(cause.text->cause);
-  return seen.size() > 1 || (!seen.empty() && std::ranges::any_of(groups, [](const Group& group) {
-           return group.num_left_out > 0;
-         }));
+      if (cause.text->is_clog && cause.ends.num_clogs > 0) seen.insert(cause.text);
+  return {seen.begin(), seen.end()};
+}
+
+bool are_mechanisms_shown(const std::vector<Group>& groups) {
+  const std::size_t number = mechanisms_of_clogs(groups).size();
+  return number > 1 || (number > 0 && std::ranges::any_of(
+                                          groups, [](const Group& group) { return group.num_left_out > 0; }));
 }
 
 bool have_some_broken(const std::vector<Group>& groups) {

@@ -25,8 +25,10 @@ std::string interval_text(const fit::CloggingLength& clogging);
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory);
 
-/// Whether the table shows the mechanisms of clogs: if the mechanisms differ, or if there are clogs and some
-/// runs have been excluded.
+/// The mechanisms that some clogs of these groups have.
+std::vector<const CauseText*> mechanisms_of_clogs(const std::vector<Group>& groups);
+/// Whether the table has a column of mechanisms. It does if clogs differ in their mechanisms, or if there are
+/// clogs and some runs have been excluded.
 bool are_mechanisms_shown(const std::vector<Group>& groups);
 bool have_some_broken(const std::vector<Group>& groups);
 

@@ -136,7 +136,7 @@ void RecordedRun::take_polygon() {
   polygons_.push_back(std::move(frame));
 }
 
-void RecordedRun::follow() {
+void RecordedRun::follow(const std::function<bool(const DropletRun&)>& is_over) {
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t processor_begin = std::clock();
   RunProgress progress;
@@ -144,7 +144,7 @@ void RecordedRun::follow() {
   for (std::int64_t checks = 0;; ++checks) {
     if (checks % intervals_.samples == 0 || over) take_sample();
     if (intervals_.polygons > 0 && (checks % intervals_.polygons == 0 || over)) take_polygon();
-    interrupted_ = !over && console::stop_signalled();
+    interrupted_ = !over && (console::stop_signalled() || (is_over && is_over(run_)));
     if (over || interrupted_) break;
     over = run_.advance(1);
     progress.tick(run_);

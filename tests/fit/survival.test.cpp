@@ -167,6 +167,42 @@ TEST(EqualDistances, AreHalfOfTheDistancesOrMore) {
   EXPECT_FALSE(are_mostly_equal({std::nan(""), std::nan("")}));
 }
 
+TEST(OnePlace, HoldsHalfOfTheDistancesOrMore) {
+  // Five distances with a mean of 2: those at one place follow each other by 2/500 at most.
+  EXPECT_TRUE(are_mostly_at_one_place({1.4966, 1.5, 1.5034, 2.5, 3}));
+  EXPECT_FALSE(are_mostly_at_one_place({1.4966, 1.5, 1.505, 2.5, 2.9984}));
+  // Two of three distances may be close by chance, and less than half of them are not most of them.
+  EXPECT_FALSE(are_mostly_at_one_place({1, 1.0001, 3}));
+  EXPECT_TRUE(are_mostly_at_one_place({1, 1.0001, 1.0002}));
+  EXPECT_FALSE(are_mostly_at_one_place({1, 1.0001, 1.0002, 3, 4, 5, 6}));
+  EXPECT_TRUE(are_mostly_at_one_place({1, 1.0001, 1.0002, 3, 4, 5}));
+  EXPECT_TRUE(are_mostly_at_one_place({1, std::nan(""), 1.0001, 1.0002}));
+  // Two places with less than half each, as the rows of a lattice have.
+  EXPECT_FALSE(are_mostly_at_one_place({1, 1.0001, 1.0002, 2, 2.0001, 2.0002, 3}));
+  EXPECT_FALSE(are_mostly_at_one_place({}));
+  EXPECT_FALSE(are_mostly_at_one_place({std::nan(""), std::nan("")}));
+  // 13 of 15 clogs of a device, within 2e-4 sigma.
+  std::vector<double> device = {2.5, 9.1};
+  for (int i = 0; i < 13; ++i) device.push_back(4.2 + 2e-4 * i / 12);
+  EXPECT_TRUE(are_mostly_at_one_place(device));
+}
+
+TEST(OnePlace, IsNotFoundInRandomArrays) {
+  std::mt19937 random(2027);
+  std::exponential_distribution<double> distance(0.1);
+  for (const std::size_t num_clogs : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 12u, 20u, 50u}) {
+    int num_found = 0;
+    constexpr int num_tables = 20000;
+    for (int table = 0; table < num_tables; ++table) {
+      std::vector<double> distances(num_clogs);
+      for (double& one : distances) one = distance(random);
+      num_found += are_mostly_at_one_place(std::move(distances)) ? 1 : 0;
+    }
+    // The chance is largest with 6 clogs: 40/600^2, from the spacings of the ordered distances.
+    EXPECT_LE(num_found, 3e-4 * num_tables) << num_clogs;
+  }
+}
+
 TEST(Exponentiality, SurvivesDegenerateData) {
   for (const std::vector<Observation>& runs : {std::vector<Observation>{},
                                                {{3, true}},

@@ -420,7 +420,7 @@ class Fit(ProgramTest):
 
     def test_equal_runs_are_doubted(self):
         self.sweep("seeds=1..12", *FAR)
-        apart = np.linspace(1, 9, 12)
+        apart, close = np.linspace(1, 9, 12), 5 + 1e-4 * np.linspace(0, 1, 12)
         met = {"contacts": 1, "first_contact_at": 0.5}
         for clogs, distance, are_met, is_doubtful in [(12, apart, met,
                                                        False), (12, np.repeat(apart[:6], 2), met, True), (6, np.repeat(apart[:6], 2), met, True),
@@ -431,11 +431,20 @@ class Fit(ProgramTest):
                                                        met, False),  # droplets that were still moving
                                                       (0, np.repeat(apart[:6], 2), met,
                                                        True), (0, apart, met, False), (12, np.zeros(12), met, True),
+                                                      (12, np.append(apart[:5], close[:7]), met, True),
+                                                      (0, close, met, False),
                                                       # Droplets that sink freely all reach the same distance.
                                                       (0, [9.0] * 12, {"contacts": 0, "first_contact_at": np.nan}, False)]:
             self.change(distance=distance, status=[b"clogged"] * clogs + [b"flowing"] * (12 - clogs), **are_met)
             doubts = (self.fit()["groups"][0]["doubts"] or "").split()
             self.assertEqual("equal_distances" in doubts, is_doubtful, (clogs, distance))
+
+    def test_clogs_at_one_place_are_doubted_in_the_table_too(self):
+        self.sweep("seeds=1..12", *FAR)
+        self.change(distance=np.append(np.linspace(1, 4, 5), 5 + 1e-4 * np.linspace(0, 1, 7)), status=[b"clogged"] * 12,
+                    contacts=1, first_contact_at=0.5)
+        text = self.succeed("clogfit", "sweep.h5").stdout
+        self.assertRegex(text, r" ex?\n(.*\n)*e: at least half of the clogs .* at one place")
 
     def test_runs_that_went_farther_than_the_box_are_counted_and_doubted(self):
         self.sweep("seeds=1..6", *FAR)
@@ -516,7 +525,13 @@ class Fit(ProgramTest):
         group, = self.fit()["groups"]
         self.assertEqual((group["wrapped"], group["clogging_length_wrapped"]), (0, None))
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
-        self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
+        text = self.succeed("clogfit", "sweep.h5").stdout
+        self.assertNotIn("w/s/h", text)
+        self.assertIn("\nclogs: all squeezed\n", text)
+        self.change(mechanism=[b"none"] * 10)
+        self.assertIn("\nclogs: all other (for instance", self.succeed("clogfit", "sweep.h5").stdout)
+        self.change(status=[b"flowing"] * 10)
+        self.assertNotIn("clogs: all", self.succeed("clogfit", "sweep.h5").stdout)
 
     def test_a_list_of_vertices_is_printed_though_they_may_be_automatic(self):
         self.succeed("clogsweep", "seeds=1..2", "vertices=64,96", "box=20", *FAR, "--output", "sweep.h5")

@@ -100,6 +100,16 @@ class Curve(ProgramTest):
         self.assertEqual([line["line_tension"] for line in csv.DictReader(io.StringIO(self.succeed(*command).stdout))],
                          ["none", "none"])
 
+    def test_a_peak_at_a_border_is_not_named_as_a_peak(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        self.assertNotIn("no peak", self.succeed("clogfit", "curve", "sweep.h5").stdout)
+        for lengths, word in ((LENGTHS[0], "largest"), (LENGTHS[-1], "smallest")):
+            rising = [lengths * (10 * i + 1) for i in range(5)]
+            self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, rising if word == "largest" else rising[::-1])))
+            text = self.succeed("clogfit", "curve", "sweep.h5").stdout
+            self.assertRegex(text, rf"\nno peak is known: highest at the {word} line_tension of these points, line_")
+            self.assertRegex(text, r"probability of \d+ % it is higher at a border than anywhere between")
+
     def test_a_wider_confidence_has_a_wider_band(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
         narrow, wide = (self.curve(f"--confidence={confidence}")["curves"][0]["curve"][40]

@@ -126,6 +126,11 @@ class Families(SweepTest, Analysis):
         self.assertEqual(float(run.attributes["droplet_diameter"]), scale)
         self.assertEqual(run.attributes["droplet"], member.path)
         self.assertEqual(run.row["status"], member.status)
+        replayed = clogsweep.open(self.folder / "s.h5", BIN).replay(member.task, droplet=member.path, interval=5)
+        self.assertEqual(replayed.attributes["droplet"], member.path)
+        np.testing.assert_array_equal(replayed.polygons, run.polygons)
+        with self.assertRaisesRegex(clogsweep.ProgramFailed, "task 0 are"):
+            clogsweep.open(self.folder / "s.h5", BIN).replay(0, droplet="0000000")
         self.assertAlmostEqual(member.birth_distance + scale * run.row["distance"], member.end_distance, delta=1e-12)
         self.assertAlmostEqual(member.birth_time + scale**0.5 * run.row["time"], member.end_time, delta=1e-9)
         self.assertAlmostEqual(run.samples.area[0], np.pi / 4, delta=0.01)
@@ -333,6 +338,26 @@ class Families(SweepTest, Analysis):
             families.family_of(table_of_droplets, 999, "s.h5")
         with self.assertRaisesRegex(UserError, "its tasks with one are 0, 1, .*, 18, 19$"):
             families.family_of(table_of_droplets[table_of_droplets.task < 20], 999, "s.h5")
+
+    def test_daughters_get_the_speed_exponent_of_the_laboratory(self):
+        """The law that gives the speeds of droplets of several sizes also holds for daughters."""
+        array = ["obstacle-gap=0.3mm", "obstacle-diameter=0.24mm", "obstacle-density=0.5/mm^2", "vertices=64", "box=20",
+                 "max-time=0.5", "break-up-neck=0.05", "seeds=1"]
+        law = "angle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\nspeed-exponent = 1\n"
+        self.write("points.csv", "break-up\ndaughters\nend\n")
+        for diameters in ("0.8 mm", "0.8 mm, 1.6 mm"):
+            self.write("lab.cfg", f"diameter = {diameters}\n{law}")
+            for words, exponents in ((["break-up=daughters"], {1.0}),
+                                     (["break-up=daughters", "speed-exponent=0.5"], {0.5}),
+                                     (["break-up=daughters", "speed-exponent=0"], {0.0}), ([], {0.0}),
+                                     (["break-up=end,daughters"], {0.0}), (["--points", "points.csv"], {0.0, 1.0})):
+                with self.subTest(words, diameters=diameters):
+                    said = self.succeed("clogsweep", "--lab", "lab.cfg", *array, *words, "--output", "own.h5").stderr
+                    self.assertEqual("not used for daughters" in said, words == ["break-up=end,daughters"])
+                    rows = table(self.folder / "own.h5")
+                    self.assertEqual(set(rows.speed_exponent), exponents)
+                    self.assertEqual(set(rows.speed_exponent[rows.break_up == "end"]) - {0.0}, set())
+                    (self.folder / "own.h5").unlink()
 
     def test_families_of_several_diameters_are_drawn_in_millimetres(self):
         self.write("lab.cfg", "diameter = 0.8 mm, 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")

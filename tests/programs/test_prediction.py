@@ -64,7 +64,9 @@ class Predicted(Analysis):
         self.write(name, f"x,y,diameter\n{x - half_x},{y - half_y},0.3\n{x + half_x},{y + half_y},0.3\n")
 
     def predict(self, *words):
-        head, *lines = self.draw("predict", "--programs", BIN, "vertices=64", *words).stdout.splitlines()
+        done = self.draw("predict", "--programs", BIN, "vertices=64", *words)
+        self.said = done.stderr
+        head, *lines = done.stdout.splitlines()
         self.assertEqual(head, "line_tension,clogging_length,squeezed,wrapped,doubts")
         return [line.split(",") for line in lines]
 
@@ -86,6 +88,7 @@ class Predicted(Analysis):
             self.write("pair.csv", "x,y,diameter\n" + "".join(f"13,{10 + side * apart / 2},{diameter}\n" for side, diameter in zip((-1, 1), diameters)))
             (tension, length, squeezed, wrapped, doubts), = self.predict("obstacles=pair.csv", "box=20", "line-tension=3")
             self.assertEqual((tension, length, wrapped, doubts), ("3", squeezed, "", ""))
+            self.assertNotIn("no length", self.said)
             self.assertAlmostEqual(float(length), 20 * 20 / apart, delta=0.1)
 
     def test_a_laboratory_gives_the_droplet_and_units(self):
@@ -132,6 +135,7 @@ class Predicted(Analysis):
         self.pair("pair.csv", 20)
         soft, stiff = self.predict("obstacles=pair.csv", "box=20", "line-tension=0.1,3")
         self.assertEqual(soft, ["0.1", "", "", "", "soft"])
+        self.assertIn("no length at line-tension=0.1: neither an obstacle nor a pair held a droplet", self.said)
         self.assertAlmostEqual(float(stiff[1]), 20 * 20 / 0.8 / math.cos(math.radians(20)), delta=0.1)
 
     def test_an_allocation_of_several_tasks_is_no_hindrance(self):

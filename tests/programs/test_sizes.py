@@ -140,6 +140,65 @@ class Sizes(LaboratoryTest):
             self.assertAlmostEqual(file["runs"]["box"][0], 20.4)
             self.assertAlmostEqual(file["runs"]["obstacle_gap"][0], 2 * (1.7 - 0.3))
 
+    def test_circles_in_millimetres_get_the_droplet_of_the_laboratory(self):
+        """A unit is enough, in a comment or in the header; the diameter may be obstacle-diameter."""
+        rows = [line.split(",") for line in POSTS.splitlines()[2:]]
+        centres = "".join(f"{x},{y}\n" for x, y, _ in rows)
+        full = POSTS.split("\n", 2)[2]
+        microns = "".join(f"{1000 * float(x):.0f},{1000 * float(y):.0f},150\n" for x, y, _ in rows)
+        keys = ["obstacles=own.csv", "box=10.2mm", "vertices=64", "max-time=0.5", "seeds=1"]
+        sets = [{"diameter": "0.8 mm", "angle": "20 deg"}, {"diameter": "0.8 mm, 1.6 mm", "angle": "20 deg"}]
+
+        def circles(text, *more, **lab):
+            self.write("own.csv", text)
+            self.sweep(*keys, *more, output="own.h5", **lab)
+            found = table(self.folder / "own.h5")
+            (self.folder / "own.h5").unlink()
+            return sorted(zip(found.obstacles, found.obstacle_gap))
+
+        for lab in sets:
+            known = circles(POSTS, **lab)
+            for text in ("# units=mm\nx,y,diameter\n" + full, "x [mm],y [mm],diameter [mm]\n" + full,
+                         "x_mm,y_mm,d\n" + full, "# x_mm y_mm diameter_mm\n" + full, "# units=um\nx,y,r\n" + microns):
+                with self.subTest(text[:30], **lab):
+                    self.assertEqual(circles(text, **lab), known)
+            for text in ("# units=mm\n", "x [mm], y [mm]\n", "# units=mm droplet=1mm\nx,y\n"):
+                with self.subTest(text, **lab):
+                    gaps = [gap for _, gap in circles(text + centres, "obstacle-diameter=0.3mm", **lab)]
+                    np.testing.assert_allclose(sorted(gaps), sorted(gap for _, gap in known), rtol=1e-9)
+                    self.refuse("clogsweep", "--quiet", "--lab", self.lab(**lab), *keys, "--output", "x.h5",
+                                words=["obstacle-diameter=0.3"])
+        self.write("points.csv", "line-tension;obstacles\n1;own.csv\n")
+        for lab in sets:
+            self.write("own.csv", "# units=mm\nx,y,diameter\n" + full)
+            self.sweep("--points", "points.csv", *keys[1:], output="own.h5", **lab)
+            names = sorted(table(self.folder / "own.h5").obstacles)
+            (self.folder / "own.h5").unlink()
+            self.assertEqual(names, sorted(name for name, _ in circles(POSTS, **lab)))
+        lab = ["--lab", self.lab(**sets[0]), "obstacle-diameter=0.3mm"]
+        for text in ("# units=mm\nx,y,diameter\n" + full, "x [mm], y [mm]\n" + centres):
+            self.write("own.csv", text)
+            self.write("own.cfg", self.succeed("clogsweep", *lab, *keys, "--print-config").stdout)
+            self.succeed("clogsweep", "--config", "own.cfg", "--output", "own.h5")  # It needs no laboratory.
+            name = table(self.folder / "own.h5").obstacles[0]
+            (self.folder / "own.h5").unlink()
+            self.assertEqual(name, circles(text, lab[2], **sets[0])[0][0])
+        for text, number in (("# units=mm\n" + full, 1), ("x [mm],y [mm]\n" + centres, 2)):
+            self.write("own.csv", text)
+            self.refuse("clogsweep", "obstacles=own.csv", "box=10", "--output", "x.h5",
+                        words=[f"own.csv line {number}", "droplet=200um", "--lab"])
+
+    def test_a_dry_run_names_the_unit_of_plain_circles(self):
+        lab = ["--lab", self.lab(diameter="0.8 mm", angle="20 deg")]
+        self.write("plain.csv", "x,y,diameter\n1,1,0.3\n4,4,0.3\n")
+        self.write("mm.csv", "# units=mm\nx,y,diameter\n1,1,0.3\n4,4,0.3\n")
+        said = self.succeed("clogsweep", *lab, "obstacles=plain.csv,mm.csv", "box=6", "--dry-run").stderr
+        line = "clogsweep: obstacles=plain.csv names no unit, so its lengths are in droplet diameters (0.8 mm)"
+        self.assertEqual([one for one in said.splitlines() if ".csv" in one], [line])
+        for arguments in ([*lab, "--quiet"], []):
+            said = self.succeed("clogsweep", *arguments, "obstacles=plain.csv", "box=6", "--dry-run").stderr
+            self.assertNotIn("names no unit", said)
+
     def test_what_would_be_meant_in_droplet_diameters_is_refused(self):
         self.write("posts.csv", POSTS)
         lab = self.lab()

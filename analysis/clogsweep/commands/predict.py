@@ -20,6 +20,7 @@ import argparse
 import math
 import pathlib
 import re
+import sys
 import tempfile
 from typing import Any
 
@@ -91,6 +92,9 @@ def body() -> int:
     for one in found:
         print(f"{one.tension:g}", *map(as_number, one[1:]), " ".join(prediction.doubts_of(one.tension, one.length)),
               *([as_number(one.length * droplet["diameter_mm"])] if droplet else []), sep=",")
+    if without := [f"{one.tension:g}" for one in found if math.isinf(one.length)]:
+        print(f"no length at line-tension={','.join(without)}: neither an obstacle nor a pair held a droplet, "
+              "and clogs on three obstacles or more are not predicted", file=sys.stderr)
     if arguments.output:
         fit: dict[str, Any] = {"groups": [], "confidence": 0.95}
         if arguments.measured:

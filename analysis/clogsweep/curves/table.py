@@ -16,6 +16,7 @@ from .points import parameter_text, value_text
 EVERY_ON_LINE = 8  # A curve of one key has 97 places, and every eighth is printed.
 ON_SIDE = 25
 EVERY_ON_SIDE = 6
+ROUNDING = 1e-9  # Keys are exponentials of their logarithms.
 
 
 def shortest(value: Any) -> str:
@@ -57,14 +58,25 @@ def text(answer: dict[str, Any], crossing: list[float]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _is_peak_known(answer: dict[str, Any], peak: dict[str, Any]) -> bool:
+    """Whether the curve has its peak between the outermost values. Otherwise it may still rise beyond them."""
+    return bool(peak["probability_between_borders"] >= answer["confidence"])
+
+
 def _peak(answer: dict[str, Any], curve: dict[str, Any]) -> list[str]:
     peak = curve["peak"]
     at = ", ".join(f"{key} {with_interval(peak, key)}" for key in answer["keys"])
-    lines = [f"highest at {at}, with lambda {with_interval(peak, ALL[0])} {unit_of(answer)}"]
-    at_border = 1 - peak["probability_between_borders"]
-    if at_border > 1 - answer["confidence"]:
-        lines.append(f"  (with a probability of {100 * at_border:.0f} % it is higher at a border than anywhere between)")
-    return lines
+    highest = f"{at}, with lambda {with_interval(peak, ALL[0])} {unit_of(answer)}"
+    if _is_peak_known(answer, peak):
+        return [f"highest at {highest}"]
+    borders = [f"the {word} {key}" for key in answer["keys"]
+               for word, end in (("smallest", min), ("largest", max))
+               if math.isclose(peak[key], end(place[key] for place in curve["curve"]), rel_tol=ROUNDING)]
+    at_border = 100 * (1 - peak["probability_between_borders"])
+    reason = f"with a probability of {at_border:.0f} % it is higher at a border than anywhere between; add points beyond"
+    if borders:
+        return [f"no peak is known: highest at {' and '.join(borders)} of these points, {highest}", f"  ({reason})"]
+    return [f"highest at {highest}", f"  (no peak is known: {reason})"]
 
 
 def _crossings(answer: dict[str, Any], curve: dict[str, Any], crossing: list[float]) -> list[str]:
@@ -111,10 +123,11 @@ def peaks(answer: dict[str, Any]) -> str:
     """The peaks as CSV, with a line for every curve. The peak is missing if the curve may be highest at an end of the
     range of values."""
     shared, names = list(answer["curves"][0]["shared"]), [f"{name}{end}" for name in [*answer["keys"], ALL[0]] for end in ("", "_lower", "_upper")]
-    found = [(curve["shared"], curve["peak"], curve["peak"]["probability_between_borders"]) for curve in answer["curves"]]
+    found = [(curve["shared"], curve["peak"]) for curve in answer["curves"]]
     return _comma_separated([[*shared, *names, "probability_between_borders"], *(
-        [*(shortest(values.get(name)) for name in shared), *(f"{peak[name]:.3g}" if inside >= answer["confidence"] else "none" for name in names), shortest(inside)]
-        for values, peak, inside in found)])
+        [*(shortest(values.get(name)) for name in shared), *(f"{peak[name]:.3g}" if _is_peak_known(answer, peak) else "none"
+                                                                 for name in names),
+         shortest(peak["probability_between_borders"])] for values, peak in found)])
 
 
 def lengths(words: str) -> list[float]:

@@ -17,7 +17,7 @@ from ..tools.hints import Group
 # The doubts of clogfit that concern the length itself, with the words for them in a note.
 HOLLOW_MARKERS = {
     "few_clogs": "fewer than 5 clogs",
-    "equal_distances": "runs that are copies of each other",
+    "equal_distances": "runs that are copies of each other, or clogs at one place",
     "held_by_mesh": "clogs that the polygon's corners may hold",
     "near_friction_limit": "clogs that almost exceed the friction (a finer mesh may let them go)",
     "wetted_mesh": "wetted walls, where the mesh matters",

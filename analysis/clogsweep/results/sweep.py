@@ -140,17 +140,27 @@ class Sweep:
                                    ways, map, jobs)
         return Picture(device.draw(*parts, groups.laboratory.get("length_mm")), stored.source(self.attributes))
 
-    def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
-        """Replays a run, with outlines. @param output  file in which the run is kept; @param interval  time between
-        outlines [t0]. @throws UserError"""
+    def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0,
+               droplet: str = "") -> Run:
+        """Replays a run, with outlines.
+
+        @param output  file in which the run is kept
+        @param interval  time between outlines [t0, of the daughter for a daughter]
+        @param droplet  path of a daughter in the table of droplets, such as "01". Its run begins with its birth, and is
+        in units of the daughter. Empty: the released droplet
+        @throws UserError, or ProgramFailed with the paths of the run's daughters if there is no such daughter
+        """
         if task not in self._records["task"]:
             raise UserError(f"{self.path} holds no task {task}; it has {len(self._records)} rows")
         options = ["--sample-interval", repr(float(interval)), "--polygon-interval", repr(float(interval))]
+        if droplet:
+            options += ["--droplet", droplet]
         if output is not None:
             replays.replay(self._program("clogrun"), self.path, task, output, *options)
             return Run(output)
         with tempfile.TemporaryDirectory(prefix="clogsweep-replay-") as folder:
-            return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval)
+            return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval,
+                               droplet=droplet)
 
     def report(self, output: str | os.PathLike[str], examples: int = 4, *,
                lab: str | os.PathLike[str] | None = None) -> pathlib.Path:

@@ -56,4 +56,9 @@ std::vector<bool> are_not_exponential(std::span<const WeibullTest> groups);
 /// happens only if the distances were rounded coarsely.
 bool are_mostly_equal(std::vector<double> distances);
 
+/// Whether at least half of the distances, and three or more, are at one place: sorted, each follows the one
+/// before by at most mean/(100 n). For n independent distances with an exponential law, the probability is
+/// below 1.2e-4 for all n.
+bool are_mostly_at_one_place(std::vector<double> distances);
+
 }  // namespace clog::fit

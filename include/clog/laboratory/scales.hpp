@@ -32,10 +32,13 @@ Scales scales_of(const Laboratory& lab);
 std::string line_tension_text(const Scales& scales);
 /// The text of each key, by the key's name.
 using Texts = std::map<std::string, std::string>;
-/// The laboratory's description, and two properties of its droplet: the terminal speed, and the line tension
-/// or, for soft disks, the wall stiffness. A property that the user has set is not included.
+/// The laboratory's description, and properties of its droplet: the terminal speed, the line tension or, for
+/// soft disks, the wall stiffness, and the exponent of the speeds of daughters. A property that the user has
+/// set is not included.
 /// @param model  empty for keys of all models
-Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model);
+/// @param has_daughters  whether the run follows daughters
+Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, const std::string& model,
+                    bool has_daughters);
 /// A key's text with its numbers in the model's units: `0.2mm,0.3mm` is `0.1,0.15` with a droplet of 2 mm.
 /// @param text  numbers without a unit, and those in sigma, keep their values
 /// @throws Error that names the key, if one of its numbers has a unit that does not suit the key

@@ -37,8 +37,9 @@ inline constexpr DoubtText doubt_texts[] = {
      "P(r) is not exponential (p < 0.05, corrected by Holm's method for all groups with ten clogs or more): "
      "one length does not describe these runs"},
     {Doubt::equal_distances, 'e', "equal_distances",
-     "at least half of the clogs are at the distance of another clog: copies of a droplet count as "
-     "independent droplets, so the interval is too narrow (distances may also have been rounded coarsely)"},
+     "at least half of the clogs are at the distance of another clog, or at one place: copies of a droplet "
+     "count as independent droplets, so the interval is too narrow (distances may also have been rounded "
+     "coarsely, or one place stops most droplets)"},
     {Doubt::censored_by_time, 't', "censored_by_time",
      "runs ended by max-time: lambda is right only if slow droplets clog as often per distance as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",

@@ -123,8 +123,8 @@ struct Group {
   int num_on_mesh = 0;  ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
   int num_stability_unknown = 0;    ///< clogs with unknown stability (column stability)
   int num_near_friction_limit = 0;  ///< clogs with almost all friction used (sweep::is_near_friction_limit)
-  /// Whether at least half of the clogs have exactly the distance of another clog. If no run clogged, this
-  /// member compares the distances of the runs that met an obstacle.
+  /// Whether at least half of the clogs are at one place, or have exactly the distance of another clog. If no
+  /// run clogged, this member compares the distances of the runs that met an obstacle.
   bool are_runs_equal = false;
   int num_free = 0;  ///< runs that met no obstacle
   /// For a device, the x of the droplets that were released away from their place on the entrance [sigma].

@@ -26,7 +26,8 @@ class RecordedRun {
 
   RecordedRun(DropletRun run, Intervals intervals);
 
-  void follow();
+  /// @param is_over  ends the run early if it returns true; the run is then interrupted
+  void follow(const std::function<bool(const DropletRun&)>& is_over = {});
   /// Advances the run by a short piece, to measure the cost of a step. The run must not be used afterwards.
   MostCost measure_cost();
 
