@@ -66,17 +66,17 @@ def _is_peak_known(answer: dict[str, Any], peak: dict[str, Any]) -> bool:
 def _peak(answer: dict[str, Any], curve: dict[str, Any]) -> list[str]:
     peak = curve["peak"]
     at = ", ".join(f"{key} {with_interval(peak, key)}" for key in answer["keys"])
-    height = f"with lambda {with_interval(peak, ALL[0])} {unit_of(answer)}"
+    highest = f"{at}, with lambda {with_interval(peak, ALL[0])} {unit_of(answer)}"
     if _is_peak_known(answer, peak):
-        return [f"highest at {at}, {height}"]
+        return [f"highest at {highest}"]
     borders = [f"the {word} {key}" for key in answer["keys"]
                for word, end in (("smallest", min), ("largest", max))
                if math.isclose(peak[key], end(place[key] for place in curve["curve"]), rel_tol=ROUNDING)]
-    at_border = 100 * (1 - peak["probability_between_borders"])
-    where = " and ".join(borders) or "values"
-    return [f"no peak is known: highest at {where} of these points, {at}, {height}",
-            f"  (with a probability of {at_border:.0f} % it is higher at a border than anywhere between; "
-            "add points beyond)"]
+    share = 100 * (1 - peak["probability_between_borders"])
+    reason = f"with a probability of {share:.0f} % it is higher at a border than anywhere between; add points beyond"
+    if borders:
+        return [f"no peak is known: highest at {' and '.join(borders)} of these points, {highest}", f"  ({reason})"]
+    return [f"highest at {highest}", f"  (no peak is known: {reason})"]
 
 
 def _crossings(answer: dict[str, Any], curve: dict[str, Any], crossing: list[float]) -> list[str]:
