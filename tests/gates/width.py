@@ -8,7 +8,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 728
+LONG_PYTHON_LINES = 727
 
 
 def prose(text):

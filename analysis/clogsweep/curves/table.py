@@ -72,8 +72,8 @@ def _peak(answer: dict[str, Any], curve: dict[str, Any]) -> list[str]:
     borders = [f"the {word} {key}" for key in answer["keys"]
                for word, end in (("smallest", min), ("largest", max))
                if math.isclose(peak[key], end(place[key] for place in curve["curve"]), rel_tol=ROUNDING)]
-    at_border = 100 * (1 - peak["probability_between_borders"])
-    reason = f"with a probability of {at_border:.0f} % it is higher at a border than anywhere between; add points beyond"
+    share = 100 * (1 - peak["probability_between_borders"])
+    reason = f"with a probability of {share:.0f} % it is higher at a border than anywhere between; add points beyond"
     if borders:
         return [f"no peak is known: highest at {' and '.join(borders)} of these points, {highest}", f"  ({reason})"]
     return [f"highest at {highest}", f"  (no peak is known: {reason})"]
