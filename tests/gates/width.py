@@ -8,7 +8,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 727
+LONG_PYTHON_LINES = 726
 
 
 def prose(text):
