@@ -17,6 +17,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/polygon/forces/automatic_values.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
@@ -233,6 +234,8 @@ int clogfit_units(int argc, const char* const* argv) {
   const std::string format = line.get_word("format", {"text", "json"});
   const std::vector<Laboratory> all = laboratory::read_laboratories(line.require("file"));
   const Laboratory& lab = all.front();
+  if (const std::string words = laboratory::unusual_density(lab); !words.empty())
+    console::say(fmt::format("clogfit units: {}: {}", line.get("file"), words));
   const Scales scales = laboratory::scales_of(lab);
   const std::vector<Conversion> known = conversions(lab, scales);
   if (all.size() > 1) {

@@ -256,7 +256,11 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
     for (const std::string& name : items_of(list))
       if (name != "none")
         if (const auto drawn_for = cli::read_circles(name).droplet()) droplets.note_size(*drawn_for);
-  if (!line.has("quiet")) say_law_of_speed(line, droplets);
+  if (!line.has("quiet")) {
+    say_law_of_speed(line, droplets);
+    if (const std::string words = laboratory::unusual_density(droplets.all.front()); !words.empty())
+      console::say(fmt::format("{}: {}: {}", line.program(), line.get("lab"), words));
+  }
   if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
   const std::vector<std::string> models = settings.values("model");
   const bool have_points = droplets.all.size() > 1 || models.size() > 1 || !points.empty();

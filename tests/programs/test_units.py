@@ -86,6 +86,23 @@ class Units(ProgramTest):
         self.refuse("clogfit", "units", self.lab("200 um", speed="1 m/s"), words=["speed=1 m/s", "V_t = ", "unit"])
         self.refuse("clogfit", "units", "nowhere.cfg", words=["cannot read nowhere.cfg (no such file); check the name"])
 
+    def test_an_unlikely_density_or_thickness_is_refused_and_a_gas_named(self):
+        for more, words in (({"density": "1855 g/ml"}, ["density=1855 g/ml", "above 25000 kg/m^3", "unit right?"]),
+                            ({"outer_density": "0.001 kg/m^3"}, ["outer-density=", "below 0.05 kg/m^3", "right?"]),
+                            ({"density_difference": "294 g/ml"}, ["density-difference=294 g/ml", "above 25000"]),
+                            ({"thickness": "0.25 m"}, ["thickness=0.25 m", "thicker than 0.1 m", "unit right?"])):
+            self.refuse("clogfit", "units", self.lab(**more), words=words)
+        said = "the density of the droplet, 1.855 kg/m^3, is that of a gas; is the unit right?"
+        lab = self.lab(density="1.855 kg/m^3", outer_density="998 kg/m^3", speed="0.2 m/s", tension="72 mN/m")
+        self.assertIn(said, self.succeed("clogfit", "units", lab).stderr)
+        self.assertIn(said, self.succeed("clogsweep", "--lab", lab, *QUICK, "--print-config").stderr)
+        self.assertEqual(self.succeed("clogfit", "units", self.lab(density="1.855 g/ml")).stderr, "")
+
+    def test_the_unit_that_is_missing_is_not_guessed(self):
+        done = self.run_program("clogfit", "units", self.lab(density="1855"))
+        self.assertIn("'1855' has no unit; write the unit of your density after the number: g/cm^3, g/ml, kg/m^3",
+                      done.stderr)
+
     def test_a_nearly_rigid_droplet_gets_advice(self):
         self.assertNotIn("rigid", self.succeed("clogfit", "units", self.lab()).stdout)
         lab = self.lab("200 um", "90 deg", "1 mm/s", "20 mN/m", "stiff.cfg")

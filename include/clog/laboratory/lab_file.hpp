@@ -39,6 +39,8 @@ constexpr const char* give_one_droplet = "give one diameter and one angle";
 /// describes several laboratories
 /// @param remedy  text of the message that says what to do about several laboratories
 Laboratory read_laboratory(const std::string& path, const std::string& remedy = give_one_droplet);
+/// A question about the unit if a density is that of a gas; empty otherwise. Bubbles are possible droplets.
+std::string unusual_density(const Laboratory& lab);
 /// One line on how the terminal speed was scaled; empty if the speed was measured.
 std::string law_of_speed(const Laboratory& lab);
 /// @param source  name of the text in messages
