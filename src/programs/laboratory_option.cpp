@@ -203,6 +203,49 @@ std::set<std::string> cells_of(const sweep::Points& points, const std::string& k
   return cells;
 }
 
+/// Whether the key has a text other than those of the default and of the preset.
+bool is_changed(const sweep::Settings& settings, const std::string& key) {
+  std::string usual = sweep::find_key(key).default_text;
+  for (const auto& [name, text] : sweep::preset_texts(settings.text("preset")))
+    if (name == key) usual = text;
+  return settings.is_given(key) && settings.text(key) != usual;
+}
+
+/// One line that names the given lengths, times and speeds without a unit, with their values in the
+/// laboratory; empty if there are none. Users may have meant such numbers in millimetres.
+std::string numbers_without_unit(const cli::CommandLine& line, const Droplets& droplets,
+                                 const sweep::Points& points) {
+  const laboratory::Scales scales = laboratory::scales_of(droplets.all.front());
+  std::vector<std::string> named;
+  for (const Parameter& parameter : parameter_schema()) {
+    const std::string key = parameter.key, unit = parameter.unit;
+    if (parameter.role != ParameterRole::physics || unit == "g rho sigma^2") continue;
+    std::set<std::string> texts = cells_of(points, key);
+    if (const auto given = line.texts_with_units().find(key); given != line.texts_with_units().end())
+      texts.insert(given->second);
+    else if (is_changed(line.settings(), key))
+      texts.insert(line.settings().text(key));
+    std::vector<double> numbers;
+    for (const std::string& text : texts)
+      for (const std::string_view number : sweep::numbers_in(text))
+        if (is_plain_number(number) && !is_zero(number))
+          numbers.push_back(std::strtod(std::string(number).c_str(), nullptr));
+    if (numbers.empty()) continue;
+    const auto [least, most] = std::ranges::minmax(numbers);
+    const auto in_laboratory = [&](double value) {
+      return laboratory::in_laboratory_units(key, value, scales);
+    };
+    if (in_laboratory(least).empty()) continue;
+    named.push_back(least == most ? fmt::format("{}={} is {}", key, shortest(least), in_laboratory(least))
+                                  : fmt::format("{}={} to {} is {} to {}", key, shortest(least),
+                                                shortest(most), in_laboratory(least), in_laboratory(most)));
+  }
+  if (named.empty()) return "";
+  return fmt::format("{}: numbers without a unit are in units of the model: {}{}", line.program(),
+                     joined(named),
+                     droplets.all.size() > 1 ? " with the first droplet of " + line.get("lab") : "");
+}
+
 /// A parameter set for each droplet, point and model; there may be no points.
 sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
                         const laboratory::Texts& given, sweep::Points points) {
@@ -256,10 +299,12 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
     for (const std::string& name : items_of(list))
       if (name != "none")
         if (const auto drawn_for = cli::read_circles(name).droplet()) droplets.note_size(*drawn_for);
+  std::string without_unit;
   if (!line.has("quiet")) {
     say_law_of_speed(line, droplets);
     if (const std::string words = laboratory::unusual_density(droplets.all.front()); !words.empty())
       console::say(fmt::format("{}: {}: {}", line.program(), line.get("lab"), words));
+    without_unit = numbers_without_unit(line, droplets, points);
   }
   if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
   const std::vector<std::string> models = settings.values("model");
@@ -271,6 +316,7 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
   const sweep::CircleFiles before = settings.circle_files();
   for (const auto& [file, circles] : before) settings.detach(file);
   for (const std::string& file : settings.missing_files()) settings.attach(file, cli::read_circles(file));
+  if (!without_unit.empty()) console::say(without_unit);
 }
 
 void use_laboratory(cli::CommandLine& line) {

@@ -98,6 +98,26 @@ class Units(ProgramTest):
         self.assertIn(said, self.succeed("clogsweep", "--lab", lab, *QUICK, "--print-config").stderr)
         self.assertEqual(self.succeed("clogfit", "units", self.lab(density="1.855 g/ml")).stderr, "")
 
+    def test_given_numbers_without_a_unit_are_named_with_their_values_in_the_laboratory(self):
+        lab = self.lab("1.6 mm", thickness="0.25 mm")
+        keys = ["break-up-neck=0.1", "obstacle-density=0.1736", "obstacle-gap=0.3mm,0.25,0.5", "box=20", "vertices=64",
+                "line-tension=0.2", "near-wall-cutoff=0.00614", "preset=robust"]
+        said = "clogsweep: numbers without a unit are in units of the model: " \
+               "obstacle-gap=0.25 to 0.5 is 0.4 mm to 0.8 mm, obstacle-density=0.1736 is 0.06781 /mm^2, " \
+               "break-up-neck=0.1 is 0.16 mm\n"
+        for last in (["--dry-run", "max-time=2min"], ["max-time=0.5s", "--output", "s.h5"]):
+            done = self.succeed("clogsweep", "--lab", lab, *keys, *last)
+            self.assertEqual(done.stderr.count("without a unit"), 1)
+            self.assertIn(said, done.stderr)
+        with_units = ["break-up-neck=0.15mm", "obstacle-density=0.068/mm^2", "obstacle-gap=0.2sigma", "max-time=1s"]
+        printed = self.succeed("clogsweep", "--lab", lab, *with_units, "box=20", "--print-config").stderr
+        self.assertNotIn("without a unit", printed)
+        self.assertNotIn("without a unit", self.succeed("clogsweep", *keys[:2], "--print-config").stderr)
+        lab = self.lab("1.6 mm, 2 mm")
+        printed = self.succeed("clogsweep", "--lab", lab, "break-up-neck=0.1", "obstacle-gap=0.2sigma",
+                               "obstacle-diameter=0.3sigma", "--print-config").stderr
+        self.assertIn("break-up-neck=0.1 is 0.16 mm with the first droplet of lab.cfg\n", printed)
+
     def test_the_unit_that_is_missing_is_not_guessed(self):
         done = self.run_program("clogfit", "units", self.lab(density="1855"))
         self.assertIn("'1855' has no unit; write the unit of your density after the number: g/cm^3, g/ml, kg/m^3",
