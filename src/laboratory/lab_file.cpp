@@ -136,8 +136,8 @@ Laboratory laboratory_of(const Entries& entries) {
   }
   lab.thickness = value_of(entries, "thickness", unknown);
   lab.tension_ratio = value_of(entries, "tension-ratio", lab.tension_ratio);
-  constexpr double largest = 0.1;  // [m]
-  if (lab.experiment.diameter > largest)
+  lab.has_own_ratio = entries.contains("tension-ratio");
+  if (lab.experiment.diameter > largest_length)
     throw Error(fmt::format("invalid diameter={} (a droplet wider than {} m; is the unit right?)",
                             entries.at("diameter"), largest_length));
   if (lab.experiment.tilt > right_angle)

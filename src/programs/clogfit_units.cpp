@@ -83,6 +83,13 @@ std::string lines_text(const std::vector<Line>& lines) {
   return text;
 }
 
+/// A remark on the default ratio of Gamma and Gamma_exp; empty if the file gives the ratio, or Gamma is
+/// unknown.
+std::string caution_about_ratio(const Laboratory& lab) {
+  if (lab.has_own_ratio || std::isnan(lab.experiment.interfacial_tension)) return "";
+  return " (ratio of one article's droplets; calibrate yours: handbook, tutorial/calibrated-droplet)";
+}
+
 std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
   const auto equals = [](const char* symbol, double value) {
     return std::isfinite(value) ? fmt::format("{} = {}", symbol, console::plain(value)) : std::string("-");
@@ -96,7 +103,7 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
       {"interfacial tension", with_unit(lab.experiment.interfacial_tension / milli, "mN/m"),
        equals("Gamma_exp", scales.line_tension_experiment)},
       {fmt::format("line tension of the model, {} Gamma_exp", console::plain(lab.tension_ratio)), "",
-       equals("Gamma", scales.line_tension)},
+       equals("Gamma", scales.line_tension) + caution_about_ratio(lab)},
       {"soft disk with the droplet's sag on a flat wall", with_unit(scales.sag * scales.length / milli, "mm"),
        equals("E_w", scales.wall_stiffness)},
       {"capillary number at the terminal speed", "", equals("Ca", scales.capillary_number)}};
@@ -214,6 +221,8 @@ int show_droplets(const std::vector<Laboratory>& all, const std::string& format)
   for (const Laboratory& lab : all) lines.push_back(line_of(lab));
   std::cout << lines_text(lines);
   if (const std::string law = laboratory::law_of_speed(all.front()); !law.empty()) std::cout << law << '\n';
+  if (const std::string caution = caution_about_ratio(all.front()); !caution.empty())
+    std::cout << "Gamma" << caution << '\n';
   return console::exit_success;
 }
 

@@ -118,6 +118,13 @@ class Units(ProgramTest):
                                "obstacle-diameter=0.3sigma", "--print-config").stderr
         self.assertIn("break-up-neck=0.1 is 0.16 mm with the first droplet of lab.cfg\n", printed)
 
+    def test_the_default_ratio_of_gamma_is_named_as_that_of_one_article(self):
+        words = "(ratio of one article's droplets; calibrate yours: handbook, tutorial/calibrated-droplet)"
+        self.assertIn(words, self.succeed("clogfit", "units", self.lab()).stdout)
+        self.assertIn(words, self.succeed("clogfit", "units", self.lab("2 mm, 3 mm")).stdout)
+        for more in ({"tension_ratio": "0.3"}, {"tension_ratio": "0.25"}):
+            self.assertNotIn("article", self.succeed("clogfit", "units", self.lab(**more)).stdout)
+
     def test_the_unit_that_is_missing_is_not_guessed(self):
         done = self.run_program("clogfit", "units", self.lab(density="1855"))
         self.assertIn("'1855' has no unit; write the unit of your density after the number: g/cm^3, g/ml, kg/m^3",

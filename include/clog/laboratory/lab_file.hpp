@@ -26,6 +26,7 @@ struct Laboratory {
   /// authors write that the difference between the two Gammas "likely stems from the fact that we compare
   /// values of the dimensionless line tension in 2D to values of the dimensionless surface tension in 3D".
   double tension_ratio = 0.3;
+  bool has_own_ratio = false;                  ///< whether the file gives tension_ratio
   std::optional<MeasuredSpeed> measured = {};  ///< the speed that was scaled to the terminal speed, if any
   std::string text;                            ///< `key = value; key = value`
 };
