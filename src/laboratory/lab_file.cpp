@@ -70,6 +70,12 @@ Entries entries_of(const std::string& text) {
   return entries;
 }
 
+double pure_number(const std::string& text) try {
+  return sweep::to_number(text);
+} catch (const sweep::NumberWithUnit& error) {
+  throw Error(std::string(error.what()) + "; it is a pure number, write it without a unit");
+}
+
 /// A key's value in SI units; `otherwise` if the file does not have the key.
 double value_of(const Entries& entries, const std::string& key, double otherwise) {
   const auto found = entries.find(key);
@@ -78,7 +84,7 @@ double value_of(const Entries& entries, const std::string& key, double otherwise
     const std::string& units = known_keys().at(key);
     if (found->second.find(',') != std::string::npos)
       throw Error("one value is needed; diameter, angle and speed may be lists");
-    const double value = units.empty() ? sweep::to_number(found->second) : to_si(found->second, units);
+    const double value = units.empty() ? pure_number(found->second) : to_si(found->second, units);
     if (value > 0 || (value == 0 && key == "speed-exponent")) return value;
     throw Error("must be positive");
   } catch (const Error& error) {

@@ -118,6 +118,13 @@ class Units(ProgramTest):
                                "obstacle-diameter=0.3sigma", "--print-config").stderr
         self.assertIn("break-up-neck=0.1 is 0.16 mm with the first droplet of lab.cfg\n", printed)
 
+    def test_ranges_are_named_and_negative_numbers_are_no_options(self):
+        for value in ("0", "-0.2"):
+            self.refuse("clogsweep", "break-up=daughters", "break-up-neck=0.1", f"smallest-daughter={value}",
+                        "near-wall-drag=0", "--output", "s.h5",
+                        words=[f"smallest-daughter={value}", "at least 0.05, at most 0.7"])
+        self.refuse("clogsweep", "replay", "s.h5", "-1", words=["invalid -1", "negative number", "0 or more"])
+
     def test_the_default_ratio_of_gamma_is_named_as_that_of_one_article(self):
         words = "(ratio of one article's droplets; calibrate yours: handbook, tutorial/calibrated-droplet)"
         self.assertIn(words, self.succeed("clogfit", "units", self.lab()).stdout)
