@@ -325,6 +325,25 @@ void use_laboratory(cli::CommandLine& line) {
   use_laboratories(line, none);
 }
 
+Refusal in_typed_units(const cli::CommandLine& line, const Refusal& refusal) {
+  if (!line.has("lab")) return refusal;
+  std::string words;
+  bool are_lengths = false;
+  for (const Parameter& parameter : parameter_schema()) {
+    const std::string key = parameter.key;
+    if (key != refusal.about().key && !refusal.names(key)) continue;
+    are_lengths |= std::string_view(parameter.unit) == "sigma";
+    if (const auto typed = line.texts_with_units().find(key); typed != line.texts_with_units().end())
+      words += fmt::format("; {} was given as {}", key, typed->second);
+  }
+  const std::vector<laboratory::Laboratory> all = laboratory::read_laboratories(line.get("lab"));
+  const bool has_scale = std::string_view(refusal.what()).find("1 sigma is") != std::string_view::npos;
+  if (are_lengths && all.size() == 1 && !has_scale)
+    words +=
+        fmt::format("; 1 sigma is {}", laboratory::in_usual_unit(all.front().experiment.diameter, "length"));
+  return refusal.between("", words);
+}
+
 results::ScalesByLaboratory scales_of_rows(const cli::CommandLine& line,
                                            const std::vector<sweep::RunRow>& rows) {
   if (line.has("lab")) return {{"", scale_of(laboratory_for(line, rows.empty() ? nullptr : &rows.front()))}};

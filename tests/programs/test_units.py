@@ -118,6 +118,27 @@ class Units(ProgramTest):
                                "obstacle-diameter=0.3sigma", "--print-config").stderr
         self.assertIn("break-up-neck=0.1 is 0.16 mm with the first droplet of lab.cfg\n", printed)
 
+    def test_messages_of_a_laboratory_repeat_the_numbers_as_given(self):
+        lab = self.lab("1.6 mm")
+        self.write("posts.csv", "# units=um droplet=1600um\nx,y,diameter\n500,500,300\n801,500,300\n")
+        self.write("far.csv", "# units=mm droplet=1.6mm\nx,y,diameter\n23.5,13,0.3\n")
+        self.write("plain.csv", "x,y,diameter\n2,2,0.3\n")
+        device = ["obstacles=plain.csv"]
+        sigma = "1 sigma is 1.6 mm"
+        for keys, words in (
+            (["break-up-neck=2.5cm"], ["=15.625", "at most 0.5", f"break-up-neck was given as 2.5cm; {sigma}"]),
+            (["break-up-neck=-0.25mm"], ["try 0.05, or 0 for droplets that never break up", "given as -0.25mm"]),
+            (["obstacles=far.csv"], ["x=14.6875, y=8.125 (23.5 mm, 13 mm) lies outside", sigma]),
+            (["obstacles=posts.csv"], ["leave a gap of 0.000625 sigma", f"{sigma}: are the units and the droplet"]),
+            ([*device, "length=32mm", "release=entrance", "exit=40mm"], ["exit=25 ", "exit was given as 40mm", sigma]),
+            ([*device, "obstacle-gap=0.3mm"], ["remove obstacle-gap", "given as 0.3mm"]),
+            (["speed-exponent=1m"], ["speed-exponent=1m", "a pure number) leave the unit out"]),
+        ):
+            with self.subTest(keys=keys):
+                self.refuse("clogsweep", "--lab", lab, "box=16mm", *keys, "--output", "s.h5", words=words)
+        self.refuse("clogrun", "array", "--lab", lab, "break-up-neck=2.5cm", "--output", "r.h5", words=["as 2.5cm"])
+        self.refuse("clogfit", "units", self.lab(speed_exponent="1m"), words=["speed-exponent=1m", "without a unit"])
+
     def test_ranges_are_named_and_negative_numbers_are_no_options(self):
         for value in ("0", "-0.2"):
             self.refuse("clogsweep", "break-up=daughters", "break-up-neck=0.1", f"smallest-daughter={value}",
