@@ -197,14 +197,15 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
           {"break_up_neck", scales.break_up_neck}};
 }
 
-/// A line of the table of several droplets.
-Line line_of(const Laboratory& lab) {
+/// A line of the table of several droplets. @param with_neck  whether the file gives the cell's thickness
+Line line_of(const Laboratory& lab, bool with_neck) {
   const Scales scales = laboratory::scales_of(lab);
   Line line;
   for (const double value :
        {scales.length / milli, lab.experiment.tilt / degree, scales.time, scales.speed / milli,
         scales.terminal_speed, scales.line_tension, scales.wall_stiffness, scales.capillary_number})
     line.push_back(with_unit(value, ""));
+  if (with_neck) line.push_back(with_unit(scales.break_up_neck, ""));
   return line;
 }
 
@@ -218,7 +219,9 @@ int show_droplets(const std::vector<Laboratory>& all, const std::string& format)
   }
   std::vector<Line> lines = {
       {"diameter/mm", "angle/deg", "t0/s", "speed/(mm/s)", "V_t", "Gamma", "E_w", "Ca"}};
-  for (const Laboratory& lab : all) lines.push_back(line_of(lab));
+  const bool with_neck = !std::isnan(all.front().thickness);
+  if (with_neck) lines.front().emplace_back("break-up-neck");
+  for (const Laboratory& lab : all) lines.push_back(line_of(lab, with_neck));
   std::cout << lines_text(lines);
   if (const std::string law = laboratory::law_of_speed(all.front()); !law.empty()) std::cout << law << '\n';
   if (const std::string caution = caution_about_ratio(all.front()); !caution.empty())

@@ -46,7 +46,7 @@ std::string speeds_text(const std::vector<double>& speeds) {
 
 /// Prints one line if runs have another terminal speed than the laboratory's droplet. Speeds and times in
 /// laboratory units then follow from the terminal speed of the runs.
-void say_other_speed(const std::vector<results::Group>& groups) {
+void say_other_speed(const cli::CommandLine& line, const std::vector<results::Group>& groups) {
   constexpr double rounding = 1e-3;
   std::vector<double> of_runs, of_droplets;
   for (const results::Group& group : groups) {
@@ -57,10 +57,9 @@ void say_other_speed(const std::vector<results::Group>& groups) {
   }
   if (of_runs.empty()) return;
   console::say(
-      fmt::format("clogfit: speeds and times in mm/s and s are those of runs with a terminal speed of {} "
-                  "mm/s; that of the "
-                  "laboratory's description is {} mm/s",
-                  speeds_text(of_runs), speeds_text(of_droplets)));
+      fmt::format("{}: speeds and times in mm/s and s are those of runs with a terminal speed of {} mm/s; "
+                  "that of the laboratory's description is {} mm/s",
+                  line.program(), speeds_text(of_runs), speeds_text(of_droplets)));
 }
 
 /// The line tension that the runs of a laboratory have.
@@ -393,7 +392,7 @@ void set_scales(const cli::CommandLine& line, std::vector<results::Group>& group
     }
   }
   if (replaces) say_replaced(line);
-  say_other_speed(groups);
+  say_other_speed(line, groups);
 }
 
 }  // namespace clog::programs

@@ -153,6 +153,22 @@ class Units(ProgramTest):
         for more in ({"tension_ratio": "0.3"}, {"tension_ratio": "0.25"}):
             self.assertNotIn("article", self.succeed("clogfit", "units", self.lab(**more)).stdout)
 
+    def test_several_droplets_have_their_necks(self):
+        printed = self.succeed("clogfit", "units", self.lab("2 mm, 4 mm", thickness="0.4 mm")).stdout.splitlines()
+        self.assertEqual([line.split()[-1] for line in printed[:3]], ["break-up-neck", "0.200", "0.100"])
+        self.assertNotIn("neck", self.succeed("clogfit", "units", self.lab("2 mm, 4 mm")).stdout)
+
+    def test_status_prints_the_units_of_the_laboratory_as_clogfit_does(self):
+        self.succeed("clogsweep", "--lab", self.lab(), *QUICK, "seeds=1..4", "--output", "s.h5")
+        column = "lambda/mm"
+        self.assertIn(column, self.succeed("clogfit", "s.h5").stdout)
+        self.assertIn(column, self.succeed("clogsweep", "status", "s.h5").stdout)
+        group, = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)["groups"]
+        self.assertAlmostEqual(group["clogging_length_lower_mm"], 3.5 * group["clogging_length_lower"])
+        with h5py.File(self.folder / "s.h5", "a") as file:
+            del file["laboratories"]
+        self.succeed("clogsweep", "status", "s.h5")
+
     def test_the_unit_that_is_missing_is_not_guessed(self):
         done = self.run_program("clogfit", "units", self.lab(density="1855"))
         self.assertIn("'1855' has no unit; write the unit of your density after the number: g/cm^3, g/ml, kg/m^3",
