@@ -155,7 +155,7 @@ void CommandLine::set_key(const std::string& name, const std::string& text) try 
   settings_.set(name, text);
   texts_with_units_.erase(name);
 } catch (const sweep::NumberWithUnit& error) {
-  if (own_.find_nothrow("lab", false) == nullptr) throw;
+  if (!sweep::find_key(name).has_unit() || own_.find_nothrow("lab", false) == nullptr) throw;
   if (!has("lab"))
     throw Error(
         fmt::format("{}; --lab FILE with the droplet's diameter would give it a meaning", error.what()));
@@ -205,6 +205,12 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
     for (const auto& known : group->options()) names.push_back(known->long_name());
   const std::string option = excerpt(word.substr(0, word.find('=')));
   const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
+  if (bare.size() < option.size() && !bare.empty() &&
+      bare.find_first_not_of("0123456789.") == std::string::npos)
+    throw Error(
+        fmt::format("invalid {} (a negative number, and words that begin with - are options) give 0 or "
+                    "more; see {} --help",
+                    option, program_));
   // If the user typed no word with this beginning, parse() added the dashes to `key=value`. The message then
   // omits the dashes.
   const bool has_dashes =

@@ -48,13 +48,17 @@ const std::string& usual_unit(const std::string& quantity) {
   return units.at(quantity);
 }
 
+std::string names_of_units(const std::string& quantity) {
+  std::string names;
+  for (const auto& [name, factor] : known_units(quantity)) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
 /// Factor of a unit. @throws Error
 double si_factor(const std::string& unit, const std::string& units) {
   const auto& known = known_units(units);
   if (const auto found = known.find(plain_unit(unit)); found != known.end()) return found->second;
-  std::string names;
-  for (const auto& [name, factor] : known) names += (names.empty() ? "" : ", ") + name;
-  throw Error("unknown unit '" + unit + "' for " + units + " (known: " + names + ")");
+  throw Error("unknown unit '" + unit + "' for " + units + " (known: " + names_of_units(units) + ")");
 }
 
 }  // namespace
@@ -65,8 +69,8 @@ double to_si(const std::string& text, const std::string& units) {
   const auto end = static_cast<std::size_t>(rest - text.c_str());
   const std::size_t unit = text.find_first_not_of(' ', end);
   if (unit == std::string::npos)
-    throw Error("'" + text + "' has no unit; write for example " + (end == 0 ? "3.5" : text.substr(0, end)) +
-                " " + usual_unit(units));
+    throw Error("'" + text + "' has no unit; write the unit of your " + units +
+                " after the number: " + names_of_units(units));
   return sweep::to_number(text.substr(0, end)) * si_factor(text.substr(unit), units);
 }
 

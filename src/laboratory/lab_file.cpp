@@ -70,6 +70,12 @@ Entries entries_of(const std::string& text) {
   return entries;
 }
 
+double pure_number(const std::string& text) try {
+  return sweep::to_number(text);
+} catch (const sweep::NumberWithUnit& error) {
+  throw Error(std::string(error.what()) + "; it is a pure number, write it without a unit");
+}
+
 /// A key's value in SI units; `otherwise` if the file does not have the key.
 double value_of(const Entries& entries, const std::string& key, double otherwise) {
   const auto found = entries.find(key);
@@ -78,7 +84,7 @@ double value_of(const Entries& entries, const std::string& key, double otherwise
     const std::string& units = known_keys().at(key);
     if (found->second.find(',') != std::string::npos)
       throw Error("one value is needed; diameter, angle and speed may be lists");
-    const double value = units.empty() ? sweep::to_number(found->second) : to_si(found->second, units);
+    const double value = units.empty() ? pure_number(found->second) : to_si(found->second, units);
     if (value > 0 || (value == 0 && key == "speed-exponent")) return value;
     throw Error("must be positive");
   } catch (const Error& error) {
@@ -98,6 +104,9 @@ constexpr const char* scaling_keys[] = {"speed-diameter", "speed-angle", "speed-
 bool scales_speed(const Entries& entries) {
   return std::ranges::any_of(scaling_keys, [&](const char* key) { return entries.contains(key); });
 }
+
+constexpr double largest_length = 0.1;  // [m]
+constexpr double densest_gas = 100;     // [kg/m^3]
 
 constexpr double right_angle = std::numbers::pi / 2 * (1 + 1e-12);
 
@@ -133,10 +142,10 @@ Laboratory laboratory_of(const Entries& entries) {
   }
   lab.thickness = value_of(entries, "thickness", unknown);
   lab.tension_ratio = value_of(entries, "tension-ratio", lab.tension_ratio);
-  constexpr double largest = 0.1;  // [m]
-  if (lab.experiment.diameter > largest)
+  lab.has_own_ratio = entries.contains("tension-ratio");
+  if (lab.experiment.diameter > largest_length)
     throw Error(fmt::format("invalid diameter={} (a droplet wider than {} m; is the unit right?)",
-                            entries.at("diameter"), largest));
+                            entries.at("diameter"), largest_length));
   if (lab.experiment.tilt > right_angle)
     throw Error(fmt::format("invalid angle={} (beyond 90 degrees)", entries.at("angle")));
   if (lab.experiment.droplet_density == lab.experiment.outer_density)
@@ -205,7 +214,39 @@ std::vector<Laboratory> parse_laboratories(const std::string& text, const std::s
   }
 }
 
+/// Refuses values that follow from a wrong unit. Laboratories stored with rows are not checked, so that old
+/// sweeps remain readable. @throws Error
+void refuse_unlikely_values(const Entries& entries, const std::string& path) {
+  constexpr double densest = 25000, lightest = 0.05;  // denser than all liquids, lighter than all gases
+  const auto refuse = [&](const std::string& key, const std::string& why) {
+    throw Error(fmt::format("{} invalid {}={} ({}; is the unit right?)", path, key, entries.at(key), why));
+  };
+  if (value_of(entries, "thickness", 0) > largest_length)
+    refuse("thickness", fmt::format("a cell thicker than {} m", largest_length));
+  for (const std::string key : {"density", "outer-density", "density-difference"}) {
+    const double density = value_of(entries, key, densest_gas);
+    if (density > densest) refuse(key, fmt::format("above {} kg/m^3", densest));
+    if (density < lightest && key != "density-difference")
+      refuse(key, fmt::format("below {} kg/m^3", lightest));
+  }
+}
+
+Laboratory only_one(std::vector<Laboratory> all, const std::string& source, const std::string& remedy) {
+  if (all.size() == 1) return std::move(all.front());
+  throw Error(
+      fmt::format("{} describes {} droplets, but only one has a place here; {}", source, all.size(), remedy));
+}
+
 }  // namespace
+
+std::string unusual_density(const Laboratory& lab) {
+  for (const auto& [what, density] : {std::pair{"droplet", lab.experiment.droplet_density},
+                                      {"liquid around the droplet", lab.experiment.outer_density}})
+    if (density < densest_gas)
+      return fmt::format("the density of the {}, {:.4g} kg/m^3, is that of a gas; is the unit right?", what,
+                         density);
+  return "";
+}
 
 std::string law_of_speed(const Laboratory& lab) {
   if (!lab.measured) return "";
@@ -218,18 +259,18 @@ std::string law_of_speed(const Laboratory& lab) {
 }
 
 Laboratory parse_laboratory(const std::string& text, const std::string& source, const std::string& remedy) {
-  std::vector<Laboratory> all = parse_laboratories(text, source);
-  if (all.size() == 1) return std::move(all.front());
-  throw Error(
-      fmt::format("{} describes {} droplets, but only one has a place here; {}", source, all.size(), remedy));
+  return only_one(parse_laboratories(text, source), source, remedy);
 }
 
 std::vector<Laboratory> read_laboratories(const std::string& path) {
-  return parse_laboratories(console::read_text(path), path);
+  const std::string text = console::read_text(path);
+  std::vector<Laboratory> all = parse_laboratories(text, path);
+  refuse_unlikely_values(entries_of(text), path);
+  return all;
 }
 
 Laboratory read_laboratory(const std::string& path, const std::string& remedy) {
-  return parse_laboratory(console::read_text(path), path, remedy);
+  return only_one(read_laboratories(path), path, remedy);
 }
 
 }  // namespace clog::laboratory

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <regex>
 #include <string>
 #include <string_view>
@@ -160,25 +161,42 @@ std::string in_model_unit(const std::string& number, const std::string& unit, co
   return fmt::format("{:.{}g}", to_si(number + unit, quantity) / size, digits);
 }
 
-}  // namespace
+/// A unit of the model: the quantity, and the unit's size in the laboratory [SI].
+struct ModelUnit {
+  std::string quantity;
+  double size;
+};
 
-std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales) {
+/// The model's unit of a key; nullopt if numbers of the key have no unit.
+std::optional<ModelUnit> model_unit_of(const std::string& key, const Scales& scales) {
   const sweep::Key& known = sweep::find_key(key);
-  const std::map<std::string, std::pair<std::string, double>> units = {
+  const std::map<std::string, ModelUnit> units = {
       {"sigma", {"length", scales.length}},
       {"1/sigma^2", {"number per area", 1 / (scales.length * scales.length)}},
       {"t0", {"time", scales.time}},
       {"sqrt(sigma g)", {"speed", scales.length / scales.time}},
       {"g rho sigma^2", {"tension", scales.tension}}};
   const auto unit = units.find(known.parameter ? known.parameter->unit : "");
+  return unit == units.end() ? std::nullopt : std::optional(unit->second);
+}
+
+}  // namespace
+
+std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales) {
+  const std::optional<ModelUnit> unit = model_unit_of(key, scales);
   try {
     return without_units(text, [&](const std::string& number, const std::string& its_unit) {
-      if (unit == units.end()) throw Error("numbers have no unit here");
-      return in_model_unit(number, its_unit, unit->second.first, unit->second.second);
+      if (!unit) throw Error(fmt::format("numbers have no unit here; write {} without {}", number, its_unit));
+      return in_model_unit(number, its_unit, unit->quantity, unit->size);
     });
   } catch (const Error& error) {
     throw Error(fmt::format("invalid {}={} ({})", key, text, error.what()));
   }
+}
+
+std::string in_laboratory_units(const std::string& key, double value, const Scales& scales) {
+  const std::optional<ModelUnit> unit = model_unit_of(key, scales);
+  return unit ? in_usual_unit(sweep::to_number(rounded_text(value * unit->size)), unit->quantity) : "";
 }
 
 std::string in_diameters(const std::string& text, double diameter) {

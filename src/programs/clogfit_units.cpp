@@ -17,6 +17,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/polygon/forces/automatic_values.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
@@ -82,6 +83,13 @@ std::string lines_text(const std::vector<Line>& lines) {
   return text;
 }
 
+/// A remark on the default ratio of Gamma and Gamma_exp; empty if the file gives the ratio, or Gamma is
+/// unknown.
+std::string caution_about_ratio(const Laboratory& lab) {
+  if (lab.has_own_ratio || std::isnan(lab.experiment.interfacial_tension)) return "";
+  return " (ratio of one article's droplets; calibrate yours: handbook, tutorial/calibrated-droplet)";
+}
+
 std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
   const auto equals = [](const char* symbol, double value) {
     return std::isfinite(value) ? fmt::format("{} = {}", symbol, console::plain(value)) : std::string("-");
@@ -95,7 +103,7 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
       {"interfacial tension", with_unit(lab.experiment.interfacial_tension / milli, "mN/m"),
        equals("Gamma_exp", scales.line_tension_experiment)},
       {fmt::format("line tension of the model, {} Gamma_exp", console::plain(lab.tension_ratio)), "",
-       equals("Gamma", scales.line_tension)},
+       equals("Gamma", scales.line_tension) + caution_about_ratio(lab)},
       {"soft disk with the droplet's sag on a flat wall", with_unit(scales.sag * scales.length / milli, "mm"),
        equals("E_w", scales.wall_stiffness)},
       {"capillary number at the terminal speed", "", equals("Ca", scales.capillary_number)}};
@@ -189,14 +197,15 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
           {"break_up_neck", scales.break_up_neck}};
 }
 
-/// A line of the table of several droplets.
-Line line_of(const Laboratory& lab) {
+/// A line of the table of several droplets. @param with_neck  whether the file gives the cell's thickness
+Line line_of(const Laboratory& lab, bool with_neck) {
   const Scales scales = laboratory::scales_of(lab);
   Line line;
   for (const double value :
        {scales.length / milli, lab.experiment.tilt / degree, scales.time, scales.speed / milli,
         scales.terminal_speed, scales.line_tension, scales.wall_stiffness, scales.capillary_number})
     line.push_back(with_unit(value, ""));
+  if (with_neck) line.push_back(with_unit(scales.break_up_neck, ""));
   return line;
 }
 
@@ -210,9 +219,13 @@ int show_droplets(const std::vector<Laboratory>& all, const std::string& format)
   }
   std::vector<Line> lines = {
       {"diameter/mm", "angle/deg", "t0/s", "speed/(mm/s)", "V_t", "Gamma", "E_w", "Ca"}};
-  for (const Laboratory& lab : all) lines.push_back(line_of(lab));
+  const bool with_neck = !std::isnan(all.front().thickness);
+  if (with_neck) lines.front().emplace_back("break-up-neck");
+  for (const Laboratory& lab : all) lines.push_back(line_of(lab, with_neck));
   std::cout << lines_text(lines);
   if (const std::string law = laboratory::law_of_speed(all.front()); !law.empty()) std::cout << law << '\n';
+  if (const std::string caution = caution_about_ratio(all.front()); !caution.empty())
+    std::cout << "Gamma" << caution << '\n';
   return console::exit_success;
 }
 
@@ -233,6 +246,8 @@ int clogfit_units(int argc, const char* const* argv) {
   const std::string format = line.get_word("format", {"text", "json"});
   const std::vector<Laboratory> all = laboratory::read_laboratories(line.require("file"));
   const Laboratory& lab = all.front();
+  if (const std::string words = laboratory::unusual_density(lab); !words.empty())
+    console::say(fmt::format("clogfit units: {}: {}", line.get("file"), words));
   const Scales scales = laboratory::scales_of(lab);
   const std::vector<Conversion> known = conversions(lab, scales);
   if (all.size() > 1) {

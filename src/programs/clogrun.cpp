@@ -165,8 +165,9 @@ int clogrun(int argc, char** argv) {
   if (system != "replay") refuse_options(line, system, {"file", "task", "to-rest", "droplet"});
   if (system == "channel") choose_layout(line, "channel");
   if (system == "sag") choose_layout(line, "wall");
-  if (followed_systems().contains(system)) return run_system(line, system);
-  if (system == "sag") return clogrun_sag(line);
+  if (followed_systems().contains(system))
+    return with_typed_units(line, [&] { return run_system(line, system); });
+  if (system == "sag") return with_typed_units(line, [&] { return clogrun_sag(line); });
   throw Error((system.empty() ? "missing system" : "unknown system '" + system + "'") +
               "; try clogrun array, clogrun channel, clogrun sag or clogrun replay");
 }

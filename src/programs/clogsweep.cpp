@@ -35,6 +35,7 @@
 #include "clog/sweep/schema_json.hpp"
 #include "clogsweep_commands.hpp"
 #include "clogsweep_options.hpp"
+#include "laboratory_option.hpp"
 
 namespace {
 
@@ -143,7 +144,8 @@ int sweep_on_all_ranks(const scheduler::Communicator& ranks, scheduler::Isolated
   if (ranks.rank() == 0) {
     exit_code = cli::run_program("clogsweep", [&] {
       if (!parse_sweep_options(line, argc, argv)) return console::exit_success;
-      std::variant<int, sweep::Plan> prepared = prepare(line, isolated);
+      std::variant<int, sweep::Plan> prepared =
+          with_typed_units(line, [&] { return prepare(line, isolated); });
       if (const int* const over = std::get_if<int>(&prepared)) return *over;
       diagnostics::refuse_to_be_alone(ranks.size());
       master.emplace(line, std::get<sweep::Plan>(std::move(prepared)), ranks.size());

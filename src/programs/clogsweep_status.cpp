@@ -20,6 +20,7 @@
 #include "clog/store/run_table.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
+#include "laboratory_option.hpp"
 
 namespace clog::programs {
 
@@ -76,6 +77,15 @@ int follow(const std::string& path) {
   }
 }
 
+/// Gives the groups the scales of their laboratories, unless the file does not contain these laboratories.
+void add_scales(const cli::CommandLine& line, std::vector<results::Group>& groups) {
+  const bool are_stored = std::ranges::all_of(groups, [](const results::Group& group) {
+    const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory;
+    return !own || !own->text().empty();
+  });
+  if (are_stored && !groups.empty()) set_scales(line, groups);
+}
+
 /// The law that scaled a measured speed to the droplets; empty if the speed was not scaled.
 std::string law_of_speed(const Status& status) {
   if (status.groups.empty()) return "";
@@ -115,8 +125,9 @@ int clogsweep_status(int argc, const char* const* argv) {
   // table is read.
   if (std::filesystem::exists(path)) store::Journal::is_open(store::journal_path(path));
   for (bool is_first = true;; is_first = false) {
-    const Status status = results::status_of(
+    Status status = results::status_of(
         path, is_first ? results::read_with_caution(path) : store::read_sweep(path), confidence);
+    add_scales(line, status.groups);
     if (line.has("watch") && format == "text" && isatty(STDOUT_FILENO)) std::cout << clear_screen;
     std::cout << (format == "json"
                       ? results::to_json(status)

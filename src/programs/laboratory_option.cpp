@@ -47,7 +47,7 @@ std::string speeds_text(const std::vector<double>& speeds) {
 
 /// Prints one line if runs have another terminal speed than the laboratory's droplet. Speeds and times in
 /// laboratory units then follow from the terminal speed of the runs.
-void say_other_speed(const std::vector<results::Group>& groups) {
+void say_other_speed(const cli::CommandLine& line, const std::vector<results::Group>& groups) {
   constexpr double rounding = 1e-3;
   std::vector<double> of_runs, of_droplets;
   for (const results::Group& group : groups) {
@@ -58,10 +58,9 @@ void say_other_speed(const std::vector<results::Group>& groups) {
   }
   if (of_runs.empty()) return;
   console::say(
-      fmt::format("clogfit: speeds and times in mm/s and s are those of runs with a terminal speed of {} "
-                  "mm/s; that of the "
-                  "laboratory's description is {} mm/s",
-                  speeds_text(of_runs), speeds_text(of_droplets)));
+      fmt::format("{}: speeds and times in mm/s and s are those of runs with a terminal speed of {} mm/s; "
+                  "that of the laboratory's description is {} mm/s",
+                  line.program(), speeds_text(of_runs), speeds_text(of_droplets)));
 }
 
 /// The line tension that the runs of a laboratory have.
@@ -229,6 +228,49 @@ std::set<std::string> cells_of(const sweep::Points& points, const std::string& k
   return cells;
 }
 
+/// Whether the key has a text other than those of the default and of the preset.
+bool is_changed(const sweep::Settings& settings, const std::string& key) {
+  std::string usual = sweep::find_key(key).default_text;
+  for (const auto& [name, text] : sweep::preset_texts(settings.text("preset")))
+    if (name == key) usual = text;
+  return settings.is_given(key) && settings.text(key) != usual;
+}
+
+/// One line that names the given lengths, times and speeds without a unit, with their values in the
+/// laboratory; empty if there are none. Users may have meant such numbers in millimetres.
+std::string numbers_without_unit(const cli::CommandLine& line, const Droplets& droplets,
+                                 const sweep::Points& points) {
+  const laboratory::Scales scales = laboratory::scales_of(droplets.all.front());
+  std::vector<std::string> named;
+  for (const Parameter& parameter : parameter_schema()) {
+    const std::string key = parameter.key, unit = parameter.unit;
+    if (parameter.role != ParameterRole::physics || unit == "g rho sigma^2") continue;
+    std::set<std::string> texts = cells_of(points, key);
+    if (const auto given = line.texts_with_units().find(key); given != line.texts_with_units().end())
+      texts.insert(given->second);
+    else if (is_changed(line.settings(), key))
+      texts.insert(line.settings().text(key));
+    std::vector<double> numbers;
+    for (const std::string& text : texts)
+      for (const std::string_view number : sweep::numbers_in(text))
+        if (is_plain_number(number) && !is_zero(number))
+          numbers.push_back(std::strtod(std::string(number).c_str(), nullptr));
+    if (numbers.empty()) continue;
+    const auto [least, most] = std::ranges::minmax(numbers);
+    const auto in_laboratory = [&](double value) {
+      return laboratory::in_laboratory_units(key, value, scales);
+    };
+    if (in_laboratory(least).empty()) continue;
+    named.push_back(least == most ? fmt::format("{}={} is {}", key, shortest(least), in_laboratory(least))
+                                  : fmt::format("{}={} to {} is {} to {}", key, shortest(least),
+                                                shortest(most), in_laboratory(least), in_laboratory(most)));
+  }
+  if (named.empty()) return "";
+  return fmt::format("{}: numbers without a unit are in units of the model: {}{}", line.program(),
+                     joined(named),
+                     droplets.all.size() > 1 ? " with the first droplet of " + line.get("lab") : "");
+}
+
 /// A parameter set for each droplet, point and model; there may be no points.
 sweep::Points points_of(const cli::CommandLine& line, const Droplets& droplets,
                         const laboratory::Texts& given, sweep::Points points) {
@@ -315,9 +357,13 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
   for (const std::string& list : circle_lists)
     for (const std::string& name : items_of(list))
       if (name != "none") note_circles(line, name, has_diameter_with_unit(given, points), droplets);
+  std::string without_unit;
   if (!line.has("quiet")) {
     say_law_of_speed(line, droplets);
     say_exponent_unused(line, droplets);
+    if (const std::string words = laboratory::unusual_density(droplets.all.front()); !words.empty())
+      console::say(fmt::format("{}: {}: {}", line.program(), line.get("lab"), words));
+    without_unit = numbers_without_unit(line, droplets, points);
   }
   if (droplets.have_several_sizes && points.empty()) refuse_lengths_without_unit(line, given);
   const std::vector<std::string> models = settings.values("model");
@@ -333,12 +379,32 @@ void use_laboratories(cli::CommandLine& line, sweep::Points& points) {
     std::ranges::copy(items_of(list), std::back_inserter(files));
   for (const std::string& file : files)
     if (file != "none") settings.attach(file, cli::read_circles(file, first_diameter));
+  if (!without_unit.empty()) console::say(without_unit);
 }
 
 void use_laboratory(cli::CommandLine& line) {
   if (line.has("lab")) laboratory::read_laboratory(line.get("lab"));
   sweep::Points none;
   use_laboratories(line, none);
+}
+
+Refusal in_typed_units(const cli::CommandLine& line, const Refusal& refusal) {
+  if (!line.has("lab")) return refusal;
+  std::string words;
+  bool are_lengths = false;
+  for (const Parameter& parameter : parameter_schema()) {
+    const std::string key = parameter.key;
+    if (key != refusal.about().key && !refusal.names(key)) continue;
+    are_lengths |= std::string_view(parameter.unit) == "sigma";
+    if (const auto typed = line.texts_with_units().find(key); typed != line.texts_with_units().end())
+      words += fmt::format("; {} was given as {}", key, typed->second);
+  }
+  const std::vector<laboratory::Laboratory> all = laboratory::read_laboratories(line.get("lab"));
+  const bool has_scale = std::string_view(refusal.what()).find("1 sigma is") != std::string_view::npos;
+  if (are_lengths && all.size() == 1 && !has_scale)
+    words +=
+        fmt::format("; 1 sigma is {}", laboratory::in_usual_unit(all.front().experiment.diameter, "length"));
+  return refusal.between("", words);
 }
 
 results::ScalesByLaboratory scales_of_rows(const cli::CommandLine& line,
@@ -390,7 +456,7 @@ void set_scales(const cli::CommandLine& line, std::vector<results::Group>& group
     }
   }
   if (replaces) say_replaced(line);
-  say_other_speed(groups);
+  say_other_speed(line, groups);
 }
 
 }  // namespace clog::programs

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
+#include "clog/core/parameters/refusal.hpp"
 #include "clog/results/distance_table.hpp"
 #include "clog/results/groups.hpp"
 
@@ -18,6 +19,18 @@ void use_laboratory(cli::CommandLine& line);
 /// texts of one droplet.
 /// @param points  the sweep's points, if any; the function combines each point with each droplet
 void use_laboratories(cli::CommandLine& line, sweep::Points& points);
+
+/// The refusal with the texts of its keys as the user typed them, and the size of sigma in the laboratory of
+/// --lab. The message itself has numbers in units of the model.
+Refusal in_typed_units(const cli::CommandLine& line, const Refusal& refusal);
+
+/// Calls body() and rewords its refusals by in_typed_units().
+template <class Body>
+auto with_typed_units(const cli::CommandLine& line, const Body& body) try {
+  return body();
+} catch (const Refusal& refusal) {
+  throw in_typed_units(line, refusal);
+}
 
 /// Gives each group the scale of the laboratory of --lab or, without --lab, of the group's own laboratory.
 /// @throws Error

@@ -90,8 +90,8 @@ void refuse_contradictions(const Settings& settings) {
       throw Refusal(
           {.excluded = {key}},
           fmt::format("obstacles and {0}={1} contradict each other (the file's own gap, density and layout "
-                      "count); leave it out, or give {0}={2}",
-                      key, settings.text(key), find_key(key).default_text));
+                      "count); remove {0}",
+                      key, settings.text(key)));
   if (settings.values("seeds").size() > 1 && settings.text("release") == "centre")
     throw Refusal({.key = "seeds", .added = "release"}, settings.text("seeds"),
                   "the droplet starts at the centre of your circles, whatever the seed",

@@ -36,8 +36,7 @@ std::string refused_value(const std::string& name, const std::string& text, cons
 }
 
 std::string unit_in_words(const Key& key) {
-  const std::string unit = key.parameter ? key.parameter->unit : "";
-  return unit.empty() ? "a pure number" : "in " + unit;
+  return key.has_unit() ? std::string("in ") + key.parameter->unit : "a pure number";
 }
 
 /// Reads the list of a key, and checks that each value is possible in some run. @throws Error that names the
@@ -54,9 +53,10 @@ std::vector<std::string> values_of(const Key& key, const std::string& text) {
     }
     return values;
   } catch (const NumberWithUnit& error) {
-    throw NumberWithUnit(refused_value(
-        key.name, text,
-        fmt::format("{}; numbers have no unit here: this one is {}", error.what(), unit_in_words(key))));
+    throw NumberWithUnit(refused_value(key.name, text,
+                                       fmt::format("{}; numbers have no unit here: this one is {}",
+                                                   error.what(), unit_in_words(key))) +
+                         (key.has_unit() ? "" : " leave the unit out"));
   } catch (const Error& error) {
     throw Error(refused_value(key.name, text, error.what()));
   }

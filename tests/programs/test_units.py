@@ -86,6 +86,94 @@ class Units(ProgramTest):
         self.refuse("clogfit", "units", self.lab("200 um", speed="1 m/s"), words=["speed=1 m/s", "V_t = ", "unit"])
         self.refuse("clogfit", "units", "nowhere.cfg", words=["cannot read nowhere.cfg (no such file); check the name"])
 
+    def test_an_unlikely_density_or_thickness_is_refused_and_a_gas_named(self):
+        for more, words in (({"density": "1855 g/ml"}, ["density=1855 g/ml", "above 25000 kg/m^3", "unit right?"]),
+                            ({"outer_density": "0.001 kg/m^3"}, ["outer-density=", "below 0.05 kg/m^3", "right?"]),
+                            ({"density_difference": "294 g/ml"}, ["density-difference=294 g/ml", "above 25000"]),
+                            ({"thickness": "0.25 m"}, ["thickness=0.25 m", "thicker than 0.1 m", "unit right?"])):
+            self.refuse("clogfit", "units", self.lab(**more), words=words)
+        said = "the density of the droplet, 1.855 kg/m^3, is that of a gas; is the unit right?"
+        lab = self.lab(density="1.855 kg/m^3", outer_density="998 kg/m^3", speed="0.2 m/s", tension="72 mN/m")
+        self.assertIn(said, self.succeed("clogfit", "units", lab).stderr)
+        self.assertIn(said, self.succeed("clogsweep", "--lab", lab, *QUICK, "--print-config").stderr)
+        self.assertEqual(self.succeed("clogfit", "units", self.lab(density="1.855 g/ml")).stderr, "")
+
+    def test_given_numbers_without_a_unit_are_named_with_their_values_in_the_laboratory(self):
+        lab = self.lab("1.6 mm", thickness="0.25 mm")
+        keys = ["break-up-neck=0.1", "obstacle-density=0.1736", "obstacle-gap=0.3mm,0.25,0.5", "box=20", "vertices=64",
+                "line-tension=0.2", "near-wall-cutoff=0.00614", "preset=robust"]
+        said = "clogsweep: numbers without a unit are in units of the model: " \
+               "obstacle-gap=0.25 to 0.5 is 0.4 mm to 0.8 mm, obstacle-density=0.1736 is 0.06781 /mm^2, " \
+               "break-up-neck=0.1 is 0.16 mm\n"
+        for last in (["--dry-run", "max-time=2min"], ["max-time=0.5s", "--output", "s.h5"]):
+            done = self.succeed("clogsweep", "--lab", lab, *keys, *last)
+            self.assertEqual(done.stderr.count("without a unit"), 1)
+            self.assertIn(said, done.stderr)
+        with_units = ["break-up-neck=0.15mm", "obstacle-density=0.068/mm^2", "obstacle-gap=0.2sigma", "max-time=1s"]
+        printed = self.succeed("clogsweep", "--lab", lab, *with_units, "box=20", "--print-config").stderr
+        self.assertNotIn("without a unit", printed)
+        self.assertNotIn("without a unit", self.succeed("clogsweep", *keys[:2], "--print-config").stderr)
+        lab = self.lab("1.6 mm, 2 mm")
+        printed = self.succeed("clogsweep", "--lab", lab, "break-up-neck=0.1", "obstacle-gap=0.2sigma",
+                               "obstacle-diameter=0.3sigma", "--print-config").stderr
+        self.assertIn("break-up-neck=0.1 is 0.16 mm with the first droplet of lab.cfg\n", printed)
+
+    def test_messages_of_a_laboratory_repeat_the_numbers_as_given(self):
+        lab = self.lab("1.6 mm")
+        self.write("posts.csv", "# units=um droplet=1600um\nx,y,diameter\n500,500,300\n801,500,300\n")
+        self.write("far.csv", "# units=mm droplet=1.6mm\nx,y,diameter\n23.5,13,0.3\n")
+        self.write("plain.csv", "x,y,diameter\n2,2,0.3\n")
+        device = ["obstacles=plain.csv"]
+        sigma = "1 sigma is 1.6 mm"
+        for keys, words in (
+            (["break-up-neck=2.5cm"], ["=15.625", "at most 0.5", f"break-up-neck was given as 2.5cm; {sigma}"]),
+            (["break-up-neck=-0.25mm"], ["try 0.05, or 0 for droplets that never break up", "given as -0.25mm"]),
+            (["obstacles=far.csv"], ["x=14.6875, y=8.125 (23.5 mm, 13 mm) lies outside", sigma]),
+            (["obstacles=posts.csv"], ["leave a gap of 0.000625 sigma", f"{sigma}: are the units and the droplet"]),
+            ([*device, "length=32mm", "release=entrance", "exit=40mm"], ["exit=25 ", "exit was given as 40mm", sigma]),
+            ([*device, "obstacle-gap=0.3mm"], ["remove obstacle-gap", "given as 0.3mm"]),
+            (["speed-exponent=1m"], ["speed-exponent=1m", "a pure number) leave the unit out"]),
+        ):
+            with self.subTest(keys=keys):
+                self.refuse("clogsweep", "--lab", lab, "box=16mm", *keys, "--output", "s.h5", words=words)
+        self.refuse("clogrun", "array", "--lab", lab, "break-up-neck=2.5cm", "--output", "r.h5", words=["as 2.5cm"])
+        self.refuse("clogfit", "units", self.lab(speed_exponent="1m"), words=["speed-exponent=1m", "without a unit"])
+
+    def test_ranges_are_named_and_negative_numbers_are_no_options(self):
+        for value in ("0", "-0.2"):
+            self.refuse("clogsweep", "break-up=daughters", "break-up-neck=0.1", f"smallest-daughter={value}",
+                        "near-wall-drag=0", "--output", "s.h5",
+                        words=[f"smallest-daughter={value}", "at least 0.05, at most 0.7"])
+        self.refuse("clogsweep", "replay", "s.h5", "-1", words=["invalid -1", "negative number", "0 or more"])
+
+    def test_the_default_ratio_of_gamma_is_named_as_that_of_one_article(self):
+        words = "(ratio of one article's droplets; calibrate yours: handbook, tutorial/calibrated-droplet)"
+        self.assertIn(words, self.succeed("clogfit", "units", self.lab()).stdout)
+        self.assertIn(words, self.succeed("clogfit", "units", self.lab("2 mm, 3 mm")).stdout)
+        for more in ({"tension_ratio": "0.3"}, {"tension_ratio": "0.25"}):
+            self.assertNotIn("article", self.succeed("clogfit", "units", self.lab(**more)).stdout)
+
+    def test_several_droplets_have_their_necks(self):
+        printed = self.succeed("clogfit", "units", self.lab("2 mm, 4 mm", thickness="0.4 mm")).stdout.splitlines()
+        self.assertEqual([line.split()[-1] for line in printed[:3]], ["break-up-neck", "0.200", "0.100"])
+        self.assertNotIn("neck", self.succeed("clogfit", "units", self.lab("2 mm, 4 mm")).stdout)
+
+    def test_status_prints_the_units_of_the_laboratory_as_clogfit_does(self):
+        self.succeed("clogsweep", "--lab", self.lab(), *QUICK, "seeds=1..4", "--output", "s.h5")
+        column = "lambda/mm"
+        self.assertIn(column, self.succeed("clogfit", "s.h5").stdout)
+        self.assertIn(column, self.succeed("clogsweep", "status", "s.h5").stdout)
+        group, = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)["groups"]
+        self.assertAlmostEqual(group["clogging_length_lower_mm"], 3.5 * group["clogging_length_lower"])
+        with h5py.File(self.folder / "s.h5", "a") as file:
+            del file["laboratories"]
+        self.succeed("clogsweep", "status", "s.h5")
+
+    def test_the_unit_that_is_missing_is_not_guessed(self):
+        done = self.run_program("clogfit", "units", self.lab(density="1855"))
+        self.assertIn("'1855' has no unit; write the unit of your density after the number: g/cm^3, g/ml, kg/m^3",
+                      done.stderr)
+
     def test_a_nearly_rigid_droplet_gets_advice(self):
         self.assertNotIn("rigid", self.succeed("clogfit", "units", self.lab()).stdout)
         lab = self.lab("200 um", "90 deg", "1 mm/s", "20 mN/m", "stiff.cfg")

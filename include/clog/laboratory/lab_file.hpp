@@ -26,6 +26,7 @@ struct Laboratory {
   /// authors write that the difference between the two Gammas "likely stems from the fact that we compare
   /// values of the dimensionless line tension in 2D to values of the dimensionless surface tension in 3D".
   double tension_ratio = 0.3;
+  bool has_own_ratio = false;                  ///< whether the file gives tension_ratio
   std::optional<MeasuredSpeed> measured = {};  ///< the speed that was scaled to the terminal speed, if any
   std::string text;                            ///< `key = value; key = value`
 };
@@ -39,6 +40,8 @@ constexpr const char* give_one_droplet = "give one diameter and one angle";
 /// describes several laboratories
 /// @param remedy  text of the message that says what to do about several laboratories
 Laboratory read_laboratory(const std::string& path, const std::string& remedy = give_one_droplet);
+/// A question about the unit if a density is that of a gas; empty otherwise. Bubbles are possible droplets.
+std::string unusual_density(const Laboratory& lab);
 /// One line on how the terminal speed was scaled; empty if the speed was measured.
 std::string law_of_speed(const Laboratory& lab);
 /// @param source  name of the text in messages

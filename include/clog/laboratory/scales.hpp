@@ -43,6 +43,8 @@ Texts droplet_texts(const Laboratory& lab, const sweep::Settings& settings, cons
 /// @param text  numbers without a unit, and those in sigma, keep their values
 /// @throws Error that names the key, if one of its numbers has a unit that does not suit the key
 std::string in_model_units(const std::string& key, const std::string& text, const Scales& scales);
+/// The inverse for one value, with four digits: "0.4 mm". Empty if numbers of the key have no unit.
+std::string in_laboratory_units(const std::string& key, double value, const Scales& scales);
 /// Converts the lengths of a list to droplet diameters. @param diameter  diameter of the droplet; NaN:
 /// unknown [m]
 /// @throws Error whose text does not name the list

@@ -20,6 +20,8 @@ struct Key {
   std::string help;            ///< meaning and unit
   const Parameter* parameter;  ///< nullptr: preset
 
+  /// Whether values of the key have a unit of the model; otherwise they are pure numbers or words.
+  bool has_unit() const { return parameter && *parameter->unit != '\0'; }
   bool is_ensemble() const { return parameter && parameter->role == ParameterRole::ensemble; }
 
   /// Sets the key's parameter to a value. Does nothing for the preset, which acts through other keys. Does

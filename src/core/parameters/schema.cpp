@@ -779,7 +779,7 @@ std::vector<Parameter> verdict_entries() {
              .meaning = "a droplet has broken up when a neck between two of its lobes is narrower than this "
                         "width; 0: droplets never break up",
              .scope = &polygons,
-             .range = {not_negative,
+             .range = {from(0, "must not be negative", "try 0.05, or 0 for droplets that never break up"),
                        to(0.5, "a droplet in a gap may be this narrow without breaking up", "try 0.05")}}),
       entry("break-up", [](auto& run) -> auto& { return run.dp.break_up; },
             {.column = "break_up",
@@ -846,7 +846,7 @@ Refusal::About about_scope(const Parameter& parameter) {
   return {.key = parameter.key};
 }
 
-[[noreturn]] void refuse(const Parameter& parameter, const ParameterValue& value, const char* reason,
+[[noreturn]] void refuse(const Parameter& parameter, const ParameterValue& value, const std::string& reason,
                          const char* remedy) {
   throw Refusal({.key = parameter.key}, text_of(value), reason, remedy);
 }
@@ -856,10 +856,14 @@ bool is_beyond(const Bound& bound, double excess) { return bound.is_allowed ? ex
 void check_range(const Parameter& parameter, double number, const ParameterValue& value) {
   if (!std::isfinite(number)) refuse(parameter, value, "must be finite", "use a number");
   const auto& [lower, upper] = parameter.range;
-  if (lower && is_beyond(*lower, number - lower->value))
-    refuse(parameter, value, lower->reason, lower->remedy);
-  if (upper && is_beyond(*upper, upper->value - number))
-    refuse(parameter, value, upper->reason, upper->remedy);
+  const auto refuse_beyond = [&](const Bound& bound) {
+    // Remedies that begin with "use" name the range themselves.
+    const bool has_range = !std::string_view(bound.remedy).starts_with("try ");
+    refuse(parameter, value, bound.reason + (has_range ? "" : "; possible: " + text_of(parameter.range)),
+           bound.remedy);
+  };
+  if (lower && is_beyond(*lower, number - lower->value)) refuse_beyond(*lower);
+  if (upper && is_beyond(*upper, upper->value - number)) refuse_beyond(*upper);
 }
 
 /// The number in a value; a share like `12.5%` is converted to a number.

@@ -27,10 +27,22 @@ namespace {
 
 [[noreturn]] void refuse_circles(const OwnCircles& circles, const std::string& reason_and_remedy,
                                  Named named = {}) {
-  refuse("obstacles", circles.source(), reason_and_remedy, named);
+  constexpr double milli = 1e-3;
+  const std::string scale =
+      circles.droplet()
+          ? fmt::format("; 1 sigma is {:.6g} mm: are the units and the droplet of the file right?",
+                        *circles.droplet() / milli)
+          : "";
+  refuse("obstacles", circles.source(), reason_and_remedy + scale, named);
 }
 
-std::string place_of(const Obstacle& circle) { return fmt::format("x={:.6g}, y={:.6g}", circle.x, circle.y); }
+/// The place of a circle, also in mm if the file of the circles gives the droplet's diameter.
+std::string place_of(const Obstacle& circle, const OwnCircles& circles) {
+  const std::string place = fmt::format("x={:.6g}, y={:.6g}", circle.x, circle.y);
+  if (!circles.droplet()) return place;
+  const double millimetres = *circles.droplet() / 1e-3;
+  return fmt::format("{} ({:.6g} mm, {:.6g} mm)", place, circle.x * millimetres, circle.y * millimetres);
+}
 
 std::vector<Obstacle> circles_of(const ObstacleParameters& obstacles) {
   return obstacles.own->with_radii(obstacles.diameter / 2);
@@ -65,13 +77,13 @@ void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
         fmt::format(
             "the one at {} lies outside the array) x is at least 0 and less than {}={}, y than box={}; other "
             "units than droplet diameters need a first line such as # units=um droplet=200um",
-            place_of(circle), obstacles.length > 0 ? "length" : "boxes*box", shortest(period.along()),
-            shortest(period.box)),
+            place_of(circle, *obstacles.own), obstacles.length > 0 ? "length" : "boxes*box",
+            shortest(period.along()), shortest(period.box)),
         {obstacles.length > 0 ? "length" : "box", "box"});
   if (2 * circle.radius >= std::min(period.along(), period.across()))
     refuse_circles(*obstacles.own, fmt::format("the one at {} meets its own periodic image) use a box larger "
                                                "than its diameter",
-                                               place_of(circle)));
+                                               place_of(circle, *obstacles.own)));
 }
 
 /// The smallest gap between a wall and a post that does not touch the wall.
@@ -136,7 +148,7 @@ void check_gaps_at_walls(const RunParameters& run) {
     refuse_circles(*obstacles.own,
                    fmt::format("the one at {} leaves a gap of {:.3g} sigma at the wall, not wider than an "
                                "edge, {:.3g} sigma) let it touch the wall, or move it away",
-                               place_of(circle), gap, edge));
+                               place_of(circle, *obstacles.own), gap, edge));
 }
 
 /// Checks the period. Side walls separate the droplet from its images across the flow, but not from its
@@ -199,7 +211,8 @@ void check_circles(const RunParameters& run) {
   check_period(obstacles);
   check_ways(obstacles);
   const ObstacleArray::Pair pair = examined(obstacles).pair;
-  const std::string both = fmt::format("those at {} and {}", place_of(pair.first), place_of(pair.second));
+  const std::string both = fmt::format("those at {} and {}", place_of(pair.first, *obstacles.own),
+                                       place_of(pair.second, *obstacles.own));
   if (pair.gap <= 0)
     refuse_circles(
         *obstacles.own,
