@@ -31,7 +31,7 @@
 #include "clogfit_lengths.hpp"
 #include "clogfit_units.hpp"
 #include "file_command.hpp"
-#include "laboratory_option.hpp"
+#include "laboratory_of_results.hpp"
 
 namespace {
 

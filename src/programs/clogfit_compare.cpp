@@ -21,7 +21,7 @@
 #include "clog/results/distance_table.hpp"
 #include "clog/results/merger.hpp"
 #include "file_command.hpp"
-#include "laboratory_option.hpp"
+#include "laboratory_of_results.hpp"
 
 namespace clog::programs {
 namespace {

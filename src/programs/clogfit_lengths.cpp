@@ -13,7 +13,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/results/distance_file.hpp"
 #include "clog/results/distance_table.hpp"
-#include "laboratory_option.hpp"
+#include "laboratory_of_results.hpp"
 
 namespace clog::programs {
 namespace {

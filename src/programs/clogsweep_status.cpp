@@ -20,7 +20,7 @@
 #include "clog/store/run_table.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
-#include "laboratory_option.hpp"
+#include "laboratory_of_results.hpp"
 
 namespace clog::programs {
 

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <optional>
-#include <vector>
-
 #include "clog/cli/command_line.hpp"
 #include "clog/core/parameters/refusal.hpp"
-#include "clog/results/distance_table.hpp"
-#include "clog/results/groups.hpp"
+#include "clog/sweep/points.hpp"
 
 namespace clog::programs {
 
@@ -31,18 +27,5 @@ auto with_typed_units(const cli::CommandLine& line, const Body& body) try {
 } catch (const Refusal& refusal) {
   throw in_typed_units(line, refusal);
 }
-
-/// Gives each group the scale of the laboratory of --lab or, without --lab, of the group's own laboratory.
-/// @throws Error
-void set_scales(const cli::CommandLine& line, std::vector<results::Group>& groups);
-
-/// The scale of the laboratory of --lab or, without --lab, of each laboratory of these rows; empty if some
-/// row has no laboratory. @throws Error
-results::ScalesByLaboratory scales_of_rows(const cli::CommandLine& line,
-                                           const std::vector<sweep::RunRow>& rows);
-
-/// The droplet's diameter in mm, from the laboratory of --lab or, without --lab, from the common laboratory
-/// of all rows; nullopt without --lab and without a common laboratory. @throws Error
-std::optional<double> sigma_in_mm(const cli::CommandLine& line, const std::vector<sweep::RunRow>& rows);
 
 }  // namespace clog::programs

@@ -124,10 +124,13 @@ def peaks(answer: dict[str, Any]) -> str:
     range of values."""
     shared, names = list(answer["curves"][0]["shared"]), [f"{name}{end}" for name in [*answer["keys"], ALL[0]] for end in ("", "_lower", "_upper")]
     found = [(curve["shared"], curve["peak"]) for curve in answer["curves"]]
-    return _comma_separated([[*shared, *names, "probability_between_borders"], *(
-        [*(shortest(values.get(name)) for name in shared), *(f"{peak[name]:.3g}" if _is_peak_known(answer, peak) else "none"
-                                                                 for name in names),
-         shortest(peak["probability_between_borders"])] for values, peak in found)])
+    lines = [[*shared, *names, "probability_between_borders"]]
+    for values, peak in found:
+        is_known = _is_peak_known(answer, peak)
+        places = [f"{peak[name]:.3g}" if is_known else "none" for name in names]
+        lines.append([*(shortest(values.get(name)) for name in shared), *places,
+                      shortest(peak["probability_between_borders"])])
+    return _comma_separated(lines)
 
 
 def lengths(words: str) -> list[float]:
