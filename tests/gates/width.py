@@ -8,7 +8,7 @@ import sys
 import known
 
 MOST = 120
-LONG_PYTHON_LINES = 726
+LONG_PYTHON_LINES = 725
 
 
 def prose(text):

@@ -714,8 +714,8 @@ class Mixtures(LaboratoryTest):
         self.assertEqual(way[-1], max(shared["censored_distances"]))
 
     def test_parameters_can_be_mixed_too(self):
-        path = self.copy_sweep("s.h5", *SMALL, *self.FAR, "line-tension=0.5,1", "seeds=1..4")
-        stored_rows.change_columns(path, distance=[1, 2, 3, 4, 5, 6, 7, 8], status=b"flowing")
+        path = self.copy_sweep("s.h5", *SMALL, *self.FAR, "line-tension=0.5,1", "seeds=1..8")
+        stored_rows.change_columns(path, distance=np.arange(1.0, 17), status=b"flowing")
         self.assertIn("mixture of line_tension 0.5 (25 %), 1 (75 %): lambda is unknown, because no droplet clogged\n",
                       self.succeed("clogfit", "s.h5", *self.TENSIONS).stdout)
         rows = table(path)
@@ -725,8 +725,8 @@ class Mixtures(LaboratoryTest):
         ways = [rows.distance[rows.line_tension == tension].mean() for tension in (0.5, 1)]
         self.assertEqual((printed["column"], printed["unit"]), ("line_tension", "sigma"))
         self.assertEqual(printed["weights"], {"0.5": 0.25, "1": 0.75})
-        self.assertAlmostEqual(printed["clogging_length"], (ways[0] + 3 * ways[1]) / 4 / 0.5)
-        # A sixteenth of the resamples has no clog.
+        self.assertAlmostEqual(printed["clogging_length"], (ways[0] + 3 * ways[1]) / 4 / 0.25)
+        # A tenth of the resamples has no clog.
         self.assertIsNone(printed["clogging_length_upper"])
         self.assertIn(" (above ", self.succeed("clogfit", "s.h5", *self.TENSIONS).stdout)
         one = self.copy_sweep("one.h5", *SMALL, *self.FAR, "line-tension=0.5,1", "seeds=1")

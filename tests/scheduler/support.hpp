@@ -60,6 +60,7 @@ inline const sweep::JobFactory make_synthetic_job = [](std::int64_t task,
 /// Names for the hosts of ranks: "0" has the first `ranks_per_host` ranks.
 inline std::vector<std::string> hosts_of_ranks(int num_ranks, int ranks_per_host) {
   std::vector<std::string> hosts;
+  hosts.reserve(static_cast<std::size_t>(num_ranks));
   for (int rank = 0; rank < num_ranks; ++rank) hosts.push_back(std::to_string(rank / ranks_per_host));
   return hosts;
 }
