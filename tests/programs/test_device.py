@@ -173,7 +173,7 @@ class Devices(Walls):
                          r"--dwell=1000 counts it as clogged")
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
-        self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
+        self.assertNotIn("with the droplet at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
         # The droplet rests from the beginning to max-time, which is 1000 t0. The --dwell that clogfit suggests must be
         # shorter.
         self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=9.44",

@@ -247,11 +247,7 @@ class Families(SweepTest, Analysis):
             first = [one for one in passed.itertuples()
                      if not any((one.task, one.path[:size]) in known for size in range(len(one.path)))]
             self.assertAlmostEqual(line["passed"]["number"], len(first) / 4)
-            each = np.array([sum(one.task == task for one in first) for task in range(4)])
-            if each.min() < each.max():
-                means = np.random.default_rng(1).choice(each, (20000, 4)).mean(axis=1)
-                np.testing.assert_allclose([line["passed"]["number_lower"], line["passed"]["number_upper"]],
-                                           np.quantile(means, [0.025, 0.975]), atol=0.26)
+            self.assertIsNone(line["passed"]["number_lower"], "four families are too few for percentiles")
         self.assertEqual([line["distance"] for line in lines["groups"][0]["families"]["lines"]][:2], [3, 7])
 
     def test_the_exit_of_a_device_is_a_line(self):
