@@ -100,13 +100,20 @@ void set_row_angle(const std::string& text, std::vector<results::Group>& groups)
 /// where droplets are no longer followed
 void require_place_for_lines(const std::string& text, const results::LinesOf& lines,
                              const std::vector<results::Group>& groups) {
-  bool is_any = false;
+  bool is_any = false, is_said = false;
   for (const results::Group& group : groups) {
     const RunParameters& run = group.first_row.parameters;
     is_any = is_any || (run.model == Model::dp && run.dp.break_up == BreakUp::daughters);
     if (!results::is_device(run)) continue;
     is_any = true;
-    const double exit = run.obstacles.exit, last = std::ranges::max(lines(group.first_row));
+    const std::vector<double> places = lines(group.first_row);
+    const double entrance = run.obstacles.entrance, exit = run.obstacles.exit;
+    const auto [first, last] = std::ranges::minmax(places);
+    if (run.obstacles.release == Release::entrance && first < entrance && !is_said)
+      console::say(
+          fmt::format("clogfit: --lines={}: {} is upstream of the release at x = {}, where no droplet counts",
+                      text, shortest(first), shortest(twelve_digits(entrance))));
+    is_said = is_said || first < entrance;
     if (exit > 0 && last > exit)
       throw Error(fmt::format(
           "invalid --lines={} ({} is behind the exit at x = {}, where runs end) give lines up to the exit{}",

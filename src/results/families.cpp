@@ -156,11 +156,27 @@ int num_known(double line, const std::vector<const Tree*>& families) {
   }));
 }
 
+/// The smaller one of two numbers of families: those of which a droplet stopped before the line, and those of
+/// which a droplet passed it.
+std::ptrdiff_t num_of_rarer_fate(double line, const std::vector<const Tree*>& families) {
+  const auto lost = std::ranges::count_if(families, [line](const Tree* family) {
+    return std::ranges::any_of(family->leaves(), [line](const Leaf& leaf) {
+      return leaf.has_stopped() && leaf.reach < line - round_off;
+    });
+  });
+  const auto passed = std::ranges::count_if(families, [line](const Tree* family) {
+    return std::ranges::any_of(family->leaves(),
+                               [line](const Leaf& leaf) { return leaf.reach >= line - round_off; });
+  });
+  return std::min(lost, passed);
+}
+
 /// Sets the share that passes, and intervals from resampled families.
 /// @param families  those released before the line
 void set_estimates(const std::vector<const Tree*>& families, double confidence, FamilyLine& line) {
   constexpr int num_resamples = 2000;
-  constexpr std::size_t enough_families = 10;  // Percentiles of fewer families are too narrow.
+  constexpr std::size_t enough_families = 10;   // Percentiles of fewer families are too narrow,
+  constexpr std::ptrdiff_t enough_of_each = 5;  // and so are those of shares that nearly all families have.
   const std::size_t num_families = families.size();
   const ProductLimit estimator(line.distance, families);
   const double passing = estimator.share(std::vector<int>(num_families, 1));
@@ -180,18 +196,18 @@ void set_estimates(const std::vector<const Tree*>& families, double confidence, 
     numbers.push_back(std::inner_product(times.begin(), times.end(), counts.begin(), 0.0) /
                       static_cast<double>(num_families));
   }
+  line.passing = no_number;
+  line.passed.number_interval = line.interval = {no_number, no_number};
   const bool are_enough = num_families >= enough_families;
-  const fit::Interval unknown{no_number, no_number};
-  line.passed.number_interval = are_enough && line.not_known < round_off
-                                    ? fit::percentile_interval(numbers, num_families, confidence)
-                                    : unknown;
-  line.passing = line.interval.lower = line.interval.upper = no_number;
+  if (are_enough && line.not_known < round_off)
+    line.passed.number_interval = fit::percentile_interval(numbers, num_families, confidence);
   if (passing > 0 && !estimator.has_reached_line()) return;
-  line.passing = passing;
-  if (are_enough) line.interval = fit::percentile_interval(shares, num_families, confidence);
+  if (are_enough && num_of_rarer_fate(line.distance, families) >= enough_of_each)
+    line.interval = fit::percentile_interval(shares, num_families, confidence);
   const int trials = num_known(line.distance, families);
   if (std::isnan(line.interval.lower) && trials > 0)
     line.interval = fit::share_interval(passing * trials, trials, confidence);
+  if (!std::isnan(line.interval.lower)) line.passing = passing;
 }
 
 FamilyLine line_at(double distance, const std::vector<Tree>& trees, double confidence) {

@@ -193,7 +193,9 @@ std::string small_part(std::span<const Obstacle> circles, const ObstacleParamete
   if (right.x - left.x > small * along && highest.y - lowest.y > small * obstacles.box) return "";
   return fmt::format(
       "obstacles={} has all circles at x={:.4g} to {:.4g}, y={:.4g} to {:.4g}, a small part of {:.4g} by "
-      "{:.4g}: box, length, entrance and exit are in droplet diameters",
+      "{:.4g} in droplet diameters; check box, length, entrance and exit (without a unit, they are in "
+      "droplet "
+      "diameters)",
       obstacles.own->source(), left.x, right.x, lowest.y, highest.y, along, obstacles.box);
 }
 

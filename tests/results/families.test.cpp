@@ -58,7 +58,7 @@ TEST(Families, CountTheAreaOfAFailedDaughterAsNotKnown) {
   EXPECT_NEAR(line.not_known, 0.5, 1e-15);
   EXPECT_NEAR(line.passed.area + line.clogged + line.small + line.not_known, 1, 1e-15);
   EXPECT_EQ(found.clogged.number, 0);
-  EXPECT_EQ(line.passing, 1) << "no droplet is known to have stopped";
+  EXPECT_TRUE(std::isnan(line.passing)) << "the fate of the only family is not known";
 }
 
 TEST(Families, HaveNoLineBeyondTheFarthestDroplet) {
@@ -178,6 +178,18 @@ TEST(Families, ThatAreFewHaveTheIntervalOfABinomialShare) {
   EXPECT_LT(at_42.interval.lower, 0.01);
   EXPECT_GT(at_42.interval.upper, 0.8);
   EXPECT_TRUE(std::isnan(at_42.passed.number_interval.lower));
+}
+
+/// One family of twelve that loses a part does not make the share surer than twelve that lose none.
+TEST(Families, OfWhichOneLosesAreaHaveNoNarrowerIntervalThanWithoutLoss) {
+  std::vector<ReleasedFamily> families(12, {{member("", 1, 0, 30, MemberEnd::flowing)}});
+  const double lower = families_of(families, 0.95).lines.front().interval.lower;
+  families.back().members = {member("", 1, 0, 4, MemberEnd::broken),
+                             member("0", std::sqrt(0.5), 4, 8, MemberEnd::clogged),
+                             member("1", std::sqrt(0.5), 4, 30, MemberEnd::flowing)};
+  const FamilyLine line = families_of(families, 0.95).lines.front();
+  EXPECT_NEAR(line.passing, 23.0 / 24, 1e-12);
+  EXPECT_LT(line.interval.lower, lower);
 }
 
 /// Halves that pass with a probability of 0.6, both or each by itself.

@@ -158,10 +158,11 @@ TEST(LimitsOfCircles, AreDevicesOfWhichCirclesFillASmallPart) {
         {{"box", box}, {"length", length}, {"side-walls", "on"}, {"release", "entrance"}, {"exit", exit}});
   };
   EXPECT_TRUE(said_of("6", "16", "15").empty());
-  EXPECT_EQ(
-      said_of("1500", "4000", "3500"),
-      std::vector<std::string>{"obstacles=posts.csv has all circles at x=2 to 14, y=2 to 4, a small part of "
-                               "4000 by 1500: box, length, entrance and exit are in droplet diameters"});
+  EXPECT_EQ(said_of("1500", "4000", "3500"),
+            std::vector<std::string>{
+                "obstacles=posts.csv has all circles at x=2 to 14, y=2 to 4, a small part of "
+                "4000 by 1500 in droplet diameters; check box, length, entrance and exit (without a "
+                "unit, they are in droplet diameters)"});
 }
 
 TEST(LimitsOfCircles, AreDiametersThatAFileLacks) {

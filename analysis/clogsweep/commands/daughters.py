@@ -78,7 +78,7 @@ def body() -> int:
         if groups.are_in_mm and not asked:
             asked = families.common_outlet(members)
         if asked:
-            asked.refuse_behind_exits(groups.members)
+            asked.refuse_outside_devices(groups.members)
             fit = Fit(*fits.fitted(clogfit, arguments.sweep, *options, "--lines", f"{asked.place:.17g}{asked.unit}"))
             groups = fit.known.finished(arguments.sweep)
         figure = families.draw(groups, asked, arguments.sweep)

@@ -59,10 +59,15 @@ class Outlet:
                             "give the outlet in droplet diameters, or add --lab FILE")
         return self.place / length
 
-    def refuse_behind_exits(self, groups: Sequence[Group]) -> None:
-        """@throws UserError  if the place is behind the exit of a device"""
+    def refuse_outside_devices(self, groups: Sequence[Group]) -> None:
+        """@throws UserError  if the place is behind the exit of a device, or upstream of the release"""
         for group in groups:
-            exit_place = group.get("in_table", group).get("exit") or math.inf  # [sigma]
+            stored = group.get("in_table", group)  # lengths in sigma
+            if stored.get("release") == "entrance" and self.of(group) < stored["entrance"]:
+                raise UserError(f"invalid --outlet={self.place:g}{self.unit} (upstream of the release at x = "
+                                f"{stored['entrance'] * self.place / self.of(group):g} {self.unit}) "
+                                "give a place downstream of it")
+            exit_place = stored.get("exit") or math.inf
             if self.of(group) > exit_place * (1 + 1e-9):  # A place in mm is rounded.
                 raise UserError(f"invalid --outlet={self.place:g}{self.unit} (behind the exit at x = "
                                 f"{exit_place * self.place / self.of(group):g} {self.unit}, where runs end) "
@@ -126,6 +131,7 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
     scales = [group["diameter_mm"] if groups.are_in_mm else 1.0 for group in members]
     known = sorted({line["distance"] * scale for group, scale in zip(members, scales)
                     for line in group["families"]["lines"]})
+    highest = 1.0  # number of droplets
     for index, (group, colour) in enumerate(zip(members, style.shades(len(members)))):
         label = groups.label_of(group)
         lines = group["families"]["lines"]
@@ -136,7 +142,9 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
         shifted = [place * style.side_by_side(index, len(members), places) for place in places]
         marker = style.MARKERS[index % len(style.MARKERS)]
         share.errorbar(shifted, passing, yerr=bars, color=colour, capsize=2)
-        counts = np.where(np.isnan(passing), np.nan, [line["passed"]["number"] for line in lines])
+        counts = np.array([line["passed"]["number"] if line["passed"]["number"] or line["not_known"] == 0 else np.nan
+                           for line in lines])
+        highest = max([highest, *counts[np.isfinite(counts)]])
         number.plot(places, counts, color=colour)
         for axes, abscissas, heights in ((share, shifted, passing), (number, places, counts)):
             for abscissa, height, line in zip(abscissas, heights, lines):
@@ -152,7 +160,7 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
         style.logarithmic_abscissa(axes, known)
         axes.xaxis.set_major_formatter(PLACE)
     share.set_ylim(0, 1.05)
-    number.set_ylim(0, 1.05 * number.dataLim.ymax)
+    number.set_ylim(0, 1.05 * highest)
     length = groups.laboratory.get("length_mm")
     at_line = outlet.with_mm(length)
     place = "place in the device" if any(group.get("passages") for group in members) else "distance from the release"

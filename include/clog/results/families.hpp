@@ -18,8 +18,8 @@ inline constexpr std::size_t num_diameter_classes = 20;
 struct Diameters {
   double number = 0;                ///< droplets per ancestor
   fit::Interval number_interval{};  ///< interval of `number` at a line, from resampled ancestors; NaN for
-                                    ///< fewer than ten ancestors, if the interval is unknown, or if all
-                                    ///< ancestors have equal numbers
+                                    ///< fewer than ten ancestors, if all ancestors have equal
+                                    ///< numbers, or if it is unknown
   double area = 0;                  ///< area of these droplets, divided by the area of the ancestors
   double mean = 0;                  ///< mean diameter of the droplets; NaN without any
   /// Numbers and areas by class. Class i contains the diameters from i * diameter_class to (i + 1) *
@@ -44,10 +44,11 @@ struct FamilyLine {
   /// moving or failed. These areas and the area that passed add up to 1.
   double clogged = 0, small = 0, not_known = 0;
   /// Share of the area that passes the line, by the product-limit estimator of Kaplan and Meier with areas as
-  /// weights. The droplets in `small` and `not_known` count as censored where they were last seen. NaN if no
-  /// droplet was followed to the line, unless all droplets have ended before it. The interval is from
-  /// resampled ancestors. With fewer than ten ancestors, or if all area passes or none, it is that of a
-  /// binomial share in which each ancestor with a known fate is one trial. NaN if the interval is unknown.
+  /// weights. The droplets in `small` and `not_known` count as censored where they were last seen. The
+  /// interval is from resampled ancestors. With fewer than ten ancestors, or if fewer than five lose area or
+  /// fewer than five pass area, it is that of a binomial share in which each ancestor with a known fate is
+  /// one trial. Share and interval are NaN if no ancestor has a known fate, or if no droplet was followed to
+  /// the line, unless all droplets have ended before it.
   double passing = 0;
   fit::Interval interval{};
 };
