@@ -318,6 +318,8 @@ class Families(SweepTest, Analysis):
     def test_an_error_about_an_outlet_names_the_option_outlet(self):
         self.write("lab.cfg", "diameter = 1.6 mm\nangle = 30 deg\nspeed = 30 mm/s\ntension = 0.03 mN/m\n")
         self.sweep_device("--lab", "lab.cfg", "line-tension=0.05", "entrance=1", "exit=15", "seeds=1")
+        self.assertIn("0.5 is upstream of the release at x = 1, where no droplet counts",
+                      self.succeed("clogfit", "d.h5", "--lines", "0.5,10").stderr)
         for place, words in (("25mm", ["invalid --outlet=25mm (behind the exit at x = 24 mm"]),
                              ("40", ["invalid --outlet=40sigma (behind the exit at x = 15 sigma"]),
                              ("1mm", ["invalid --outlet=1mm (upstream of the release at x = "]),
