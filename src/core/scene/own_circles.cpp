@@ -38,7 +38,7 @@ namespace {
 
 /// The place of a circle, also in mm if the file of the circles gives the droplet's diameter.
 std::string place_of(const Obstacle& circle, const OwnCircles& circles) {
-  const std::string place = fmt::format("x={:.6g}, y={:.6g}", circle.x, circle.y);
+  std::string place = fmt::format("x={:.6g}, y={:.6g}", circle.x, circle.y);
   if (!circles.droplet()) return place;
   const double millimetres = *circles.droplet() / 1e-3;
   return fmt::format("{} ({:.6g} mm, {:.6g} mm)", place, circle.x * millimetres, circle.y * millimetres);
