@@ -109,11 +109,12 @@ void require_place_for_lines(const std::string& text, const results::LinesOf& li
     const std::vector<double> places = lines(group.first_row);
     const double entrance = run.obstacles.entrance, exit = run.obstacles.exit;
     const auto [first, last] = std::ranges::minmax(places);
-    if (run.obstacles.release == Release::entrance && first < entrance && !is_said)
+    const bool is_upstream = run.obstacles.release == Release::entrance && first < entrance;
+    if (is_upstream && !is_said)
       console::say(
           fmt::format("clogfit: --lines={}: {} is upstream of the release at x = {}, where no droplet counts",
                       text, shortest(first), shortest(twelve_digits(entrance))));
-    is_said = is_said || first < entrance;
+    is_said = is_said || is_upstream;
     if (exit > 0 && last > exit)
       throw Error(fmt::format(
           "invalid --lines={} ({} is behind the exit at x = {}, where runs end) give lines up to the exit{}",

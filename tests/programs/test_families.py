@@ -131,6 +131,8 @@ class Families(SweepTest, Analysis):
         np.testing.assert_array_equal(replayed.polygons, run.polygons)
         with self.assertRaisesRegex(clogsweep.ProgramFailed, "task 0 are"):
             clogsweep.open(self.folder / "s.h5", BIN).replay(0, droplet="0000000")
+        with self.assertRaisesRegex(UserError, "invalid droplet=0"):
+            clogsweep.open(self.folder / "s.h5", BIN).replay(0, droplet=0)
         self.assertAlmostEqual(member.birth_distance + scale * run.row["distance"], member.end_distance, delta=1e-12)
         self.assertAlmostEqual(member.birth_time + scale**0.5 * run.row["time"], member.end_time, delta=1e-9)
         self.assertAlmostEqual(run.samples.area[0], np.pi / 4, delta=0.01)

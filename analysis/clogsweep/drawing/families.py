@@ -62,12 +62,12 @@ class Outlet:
     def refuse_outside_devices(self, groups: Sequence[Group]) -> None:
         """@throws UserError  if the place is behind the exit of a device, or upstream of the release"""
         for group in groups:
-            stored = group.get("in_table", group)  # lengths in sigma
-            if stored.get("release") == "entrance" and self.of(group) < stored["entrance"]:
+            own = group.get("in_table", group)  # lengths in sigma
+            if own.get("release") == "entrance" and self.of(group) < own["entrance"]:
                 raise UserError(f"invalid --outlet={self.place:g}{self.unit} (upstream of the release at x = "
-                                f"{stored['entrance'] * self.place / self.of(group):g} {self.unit}) "
+                                f"{own['entrance'] * self.place / self.of(group):g} {self.unit}) "
                                 "give a place downstream of it")
-            exit_place = stored.get("exit") or math.inf
+            exit_place = own.get("exit") or math.inf
             if self.of(group) > exit_place * (1 + 1e-9):  # A place in mm is rounded.
                 raise UserError(f"invalid --outlet={self.place:g}{self.unit} (behind the exit at x = "
                                 f"{exit_place * self.place / self.of(group):g} {self.unit}, where runs end) "
@@ -77,6 +77,12 @@ class Outlet:
         """The group's line at this place."""
         place = self.of(group)
         return next((line for line in group["families"]["lines"] if math.isclose(line["distance"], place)), None)
+
+
+def unknown_area(line: dict[str, Any]) -> float:
+    """Fraction of the area whose fate at a line is not known. Droplets that are too small to be followed belong to
+    it."""
+    return float(line["not_known"] + line["small"])
 
 
 def with_families(groups: Groups, source: AnyPath) -> list[Group]:
@@ -101,7 +107,7 @@ def outlet_of(members: Sequence[Group]) -> Outlet:
 
     def is_known(outlet: Outlet) -> bool:
         lines = [outlet.line(group) for group in members]
-        return all(line and line["not_known"] <= MOST_UNKNOWN for line in lines)
+        return all(line and unknown_area(line) <= MOST_UNKNOWN for line in lines)
 
     outlets = [Outlet(distance, "sigma") for distance in known]
     return next(filter(is_known, reversed(outlets)), outlets[0])
@@ -149,7 +155,7 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
         for axes, abscissas, heights in ((share, shifted, passing), (number, places, counts)):
             for abscissa, height, line in zip(abscissas, heights, lines):
                 axes.plot(abscissa, height, color=colour, marker=marker,
-                          fillstyle="none" if line["not_known"] > MOST_UNKNOWN else "full")
+                          fillstyle="none" if unknown_area(line) > MOST_UNKNOWN else "full")
         at_outlet = outlet.line(group)
         if at_outlet:
             numbers = at_outlet["passed"]["numbers"]
@@ -178,7 +184,7 @@ def draw(groups: Groups, asked: Outlet | None, source: AnyPath) -> Figure:
             axis.set_major_locator(FixedLocator([length * tick for tick in axes.get_xticks()]))
             axis.set_minor_locator(NullLocator())
             axis.set_major_formatter(PLACE)
-    unknown = [line["not_known"] for group in members if (line := outlet.line(group))]
+    unknown = [unknown_area(line) for group in members if (line := outlet.line(group))]
     style.notes_of_panels(figure, [
         "bars: intervals from resampled released droplets; a droplet passes when it, or one from which it descends, "
         "first crosses the line",

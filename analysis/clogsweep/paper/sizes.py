@@ -65,6 +65,6 @@ def diameters_behind_an_array(runner: Runner) -> Plate:
     fits = style.fitting(drawing, 8, 0.9 * drawing.bbox.width)
     drawing.suptitle(style.in_lines(describe(runner.columns(CONFIG), groups, ["vertices", "line_tension"]), fits),
                      fontsize=8, color="0.25")
-    unknown = max(point["not_known"] for point in data)
+    unknown = max(point["not_known"] + point["small"] for point in data)
     style.notes_of_panels(drawing, [fate_note(str(outlet), unknown)])
     return Plate(drawing, data)

@@ -148,11 +148,15 @@ class Sweep:
         @param interval  time between outlines [t0, of the daughter for a daughter]
         @param droplet  path of a daughter in the table of droplets, such as "01". Its run begins with its birth, and is
         in units of the daughter. Empty: the released droplet
-        @throws UserError, or ProgramFailed with the paths of the run's daughters if there is no such daughter
+        @throws UserError  if `droplet` is no text; ProgramFailed, with the paths of the run's daughters, if there is no
+        such daughter
         """
         if task not in self._records["task"]:
             raise UserError(f"{self.path} holds no task {task}; it has {len(self._records)} rows")
         options = ["--sample-interval", repr(float(interval)), "--polygon-interval", repr(float(interval))]
+        if not isinstance(droplet, str):
+            raise UserError(f"invalid droplet={droplet!r} (a path is a text; as a number, 00 would be 0) "
+                            "give it in quotes; read the column path as text")
         if droplet:
             options += ["--droplet", droplet]
         if output is not None:
